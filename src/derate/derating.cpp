@@ -13,6 +13,7 @@
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "derate/motor_verdicts.h"
+#include "derate/search_work.h"
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
@@ -146,12 +147,12 @@ struct Attempt {
 
 class Search {
  public:
-  Search(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress)
+  Search(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, SearchWork& work)
       : motor_(motor),
         robot_(robot),
         options_(options),
         reachable_(barrier_rules(motor, robot, options)),
-        progress_(progress),
+        work_(work),
         network_(motor::datasheet_network(motor, motor::nominal_sample(motor))) {
     require_short_period(network_, robot, reachable_, options);
   }
@@ -163,7 +164,7 @@ class Search {
   double reserve() {
     constexpr double kGrowth = 1.5;
     const GuaranteeOptions& goal = options_.guarantee;
-    MotorVerdicts motors(motor_, reachable_.limits, goal, 0);
+    MotorVerdicts motors(motor_, reachable_.limits, goal, 0, simulated());
     return smallest(1.0, kGrowth, motors, static_cast<int>((1.0 - goal.confidence) * goal.samples));
   }
 
@@ -180,12 +181,16 @@ class Search {
   Promise promise(double from) {
     constexpr double kGrowth = 1.05;
     const GuaranteeOptions& goal = options_.guarantee;
-    MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart);
+    work_.begin(SearchWork::factor_of_promise);
+    MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart, simulated());
     for (;;) {
       const double found = smallest(from, kGrowth, motors, most_over(goal));
       Attempt last = std::move(*last_);
       std::vector<UsePlayed> uses = all_uses(last);
-      const Guarantee guarantee = check(motor_, reachable_.limits, uses, goal, kStreamsApart);
+      work_.begin(SearchWork::final_check);
+      const std::size_t per_block = base::kLanes * uses.size();
+      const Guarantee guarantee =
+          check(motor_, reachable_.limits, uses, goal, kStreamsApart, [&](std::size_t, std::size_t) { work_.add(per_block); });
       if (guarantee.least_kept_share >= goal.confidence) {
         return {std::move(last.observer), last.rules, std::move(last.table), std::move(uses), guarantee};
       }
@@ -207,10 +212,6 @@ class Search {
  private:
   /// Throws too_hot() if the motor exceeds its limits without current at most speeds.
   Attempt attempt(double reserve) {
-    if (progress_) {
-      ++rounds_;
-      progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
-    }
     Observer observer(network_, motor_.nominal, robot_, reserve);
     BarrierRules rules = reachable_;
     rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, reachable_);
@@ -224,7 +225,26 @@ class Search {
     CurrentTable table = current_table(observer, rules, options_.table);
     std::vector<LoadPattern> patterns = hardest_patterns(observer, rules);
     const std::size_t count = patterns.size();
+    expect_work(count);
     return {reserve, std::move(observer), rules, std::move(table), std::move(patterns), std::vector<std::optional<UsePlayed>>(count)};
+  }
+
+  /// Expects that each stage simulates every motor in every use about once; of later attempts few motors are unknown.
+  void expect_work(std::size_t uses) {
+    const std::size_t once = uses * static_cast<std::size_t>(options_.guarantee.samples);
+    if (work_.expected(SearchWork::final_check) == 0) {
+      work_.expect(SearchWork::factor_of_search, once + kUsualAttempts * kAttempt);
+      work_.expect(SearchWork::factor_of_promise, once + kUsualAttempts * kAttempt);
+      work_.expect(SearchWork::final_check, once);
+      if (options_.sensor) {
+        expect_sensor_work(work_, motor_, reachable_, options_.period_s, uses, options_.guarantee.samples);
+      }
+    }
+    work_.add(kAttempt);
+  }
+
+  [[nodiscard]] MotorVerdicts::Simulated simulated() {
+    return [this](std::size_t motors) { work_.add(motors); };
   }
 
   /// Throws too_hot() if the observer itself exceeds its limit: with a temperature-dependent law a node may heat again before it reaches
@@ -269,8 +289,9 @@ class Search {
     return kept(with, *with.uses[index]);
   }
 
-  /// Typical number of attempts for motors of the database, including those of the check.
-  static constexpr std::size_t kUsualRounds = 10;
+  // Of the motors in the database: attempts of each of the two searches, and simulations that an attempt takes as long as.
+  static constexpr std::size_t kUsualAttempts = 5;
+  static constexpr std::size_t kAttempt = 300;
 
   /// Returns the smallest safety factor, at least `from`, at which at most `most_over` motors exceed a limit. Throws too_hot() if there is
   /// none.
@@ -293,9 +314,8 @@ class Search {
   const robot::Robot& robot_;
   const DerateOptions& options_;
   BarrierRules reachable_;
-  const base::Progress& progress_;
+  SearchWork& work_;
   thermal::Network network_;
-  std::size_t rounds_ = 0;
   std::optional<Attempt> last_;  ///< last attempt that was sufficient
 };
 
@@ -316,7 +336,8 @@ double limp_current_A(const Derating& derating) {
 Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress) {
   require_samples(options.guarantee);
   const motor::Motor motor = motor::with_default_spreads(as_written);
-  Search search(motor, robot, options, progress);
+  SearchWork work(progress);
+  Search search(motor, robot, options, work);
   Search::Promise promise = search.promise(search.reserve());
   Derating result{.motor_id = motor.id,
                   .robot_id = robot.id,
@@ -343,7 +364,7 @@ Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const
                               own == motor.effects.end() ? std::string() : own->column});
   }
   if (options.sensor) {
-    result.sensor = plan_sensor(as_written, robot, result, *options.sensor, progress);
+    result.sensor = plan_sensor(as_written, robot, result, *options.sensor, &work);
   }
   return result;
 }

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace heatsoak::derate {
 
 MotorVerdicts::MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options,
-                             std::uint64_t first_stream)
-    : limits_(limits), threads_(options.threads), over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0) {
+                             std::uint64_t first_stream, Simulated simulated)
+    : limits_(limits),
+      threads_(options.threads),
+      simulated_(std::move(simulated)),
+      over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0) {
   for (std::size_t begin = 0; begin < over_up_to_ratio_.size(); begin += base::kLanes) {
     std::ranges::move(drawn_networks(motor, options.seed, first_stream + begin), std::back_inserter(motors_));
   }
@@ -52,7 +56,8 @@ void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& 
   std::ranges::copy_if(undecided, std::back_inserter(motors),
                        [&](std::size_t motor) { return safety_factor < known.kept_from_ratio[motor]; });
   std::vector<std::array<MotorPeak, base::kLanes>> found((motors.size() + base::kLanes - 1) / base::kLanes);
-  base::in_parallel(found.size(), threads_, [&](std::size_t block) {
+  const base::Progress progress = simulated_ ? [this](std::size_t, std::size_t) { simulated_(base::kLanes); } : base::Progress();
+  base::in_parallel(found.size(), threads_, 0, found.size(), progress, [&](std::size_t block) {
     std::vector<thermal::Network> networks;
     for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
       networks.push_back(motors_[motors[std::min(block * base::kLanes + lane, motors.size() - 1)]]);

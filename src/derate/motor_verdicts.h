@@ -18,9 +18,12 @@ class MotorVerdicts {
  public:
   /// Returns use `index` of the patterns, simulated with the guard for this safety factor.
   using Play = std::function<const UsePlayed&(std::size_t index)>;
+  /// Gets the number of motors that were simulated through one use since the last call.
+  using Simulated = std::function<void(std::size_t motors)>;
 
   /// Draws options.samples motors from the random streams from `first_stream` on.
-  MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream);
+  MotorVerdicts(const motor::Motor& motor, const TemperatureLimits& limits, const GuaranteeOptions& options, std::uint64_t first_stream,
+                Simulated simulated = {});
 
   /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.
   int count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play);
@@ -37,6 +40,7 @@ class MotorVerdicts {
 
   TemperatureLimits limits_;
   int threads_ = 0;
+  Simulated simulated_;
   std::vector<thermal::Network> motors_;
   std::vector<double> over_up_to_ratio_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
   std::vector<Known> known_;

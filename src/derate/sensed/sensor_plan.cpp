@@ -20,6 +20,23 @@ namespace {
 /// Simulation steps per approach_s of the search and of the check. A longer step holds the current longer, which heats more.
 constexpr double kStepsPerApproach = 10.0;
 constexpr double kCheckStepsPerApproach = 30.0;
+/// Usual attempts of search and check, motors that take as long as the sensor fault, and simulations without a sensor that a step of one
+/// with a sensor takes as long as.
+constexpr std::size_t kUsualSearches = 8;
+constexpr std::size_t kUsualChecks = 4;
+constexpr std::size_t kFaultMotors = 280;
+constexpr double kSimulationsPerStep = 1e-3;
+
+double coarse_step_s(const BarrierRules& rules, double period_s) { return std::max(period_s, rules.approach_s / kStepsPerApproach); }
+double fine_step_s(const BarrierRules& rules, double period_s) {
+  return std::max(2.0 * period_s, rules.approach_s / kCheckStepsPerApproach);
+}
+
+/// Returns the work of this many simulations with a sensor.
+std::size_t sensed_work(const motor::Motor& motor, double step_s, std::size_t simulations) {
+  return static_cast<std::size_t>(kSimulationsPerStep * use_duration_s(motor.nominal) / step_s * static_cast<double>(simulations));
+}
+
 /// Offset between the random streams of the search, which are those of the guard without a sensor, and those of the check.
 constexpr std::uint64_t kStreamsApart = std::uint64_t{1} << 32U;
 /// Exponent of winding_speed_ratio over the ratio of safety factors. A pulse from cold heats the winding in proportion to safety factor
@@ -43,12 +60,12 @@ ReadingCheck first_check(const SensorOptions& options) {
 class PlanSearch {
  public:
   PlanSearch(const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
-             const base::Progress& progress)
+             SearchWork* work)
       : motor_(motor),
         robot_(robot),
         model_only_(model_only),
         options_(options),
-        progress_(progress),
+        work_(work),
         uses_(hardest_patterns(model_only.observer, model_only.rules)) {
     const SensorGain gain = sensor_gain(motor, robot, model_only.rules, options, model_only.options.period_s, limp_current_A(model_only),
                                         model_only.options.guarantee.samples, model_only.options.guarantee.seed);
@@ -82,7 +99,9 @@ class PlanSearch {
     const SensedLoop sensed = loop(plan, step_s);
     const auto blocks = static_cast<std::size_t>((options.samples + base::kLanes - 1) / base::kLanes);
     std::vector<SensedPeak> all(blocks * base::kLanes);
-    base::in_parallel(blocks, options.threads, [&](std::size_t block) {
+    const std::size_t per_block = sensed_work(motor_, step_s, base::kLanes * uses_.size());
+    const base::Progress progress = work_ ? [&](std::size_t, std::size_t) { work_->add(per_block); } : base::Progress();
+    base::in_parallel(blocks, options.threads, 0, blocks, progress, [&](std::size_t block) {
       const auto found = sensed_peaks(sensed, uses_, options.seed, first_stream + block * base::kLanes);
       std::ranges::copy(found, all.begin() + static_cast<std::ptrdiff_t>(block * base::kLanes));
     });
@@ -94,7 +113,8 @@ class PlanSearch {
   /// none below the factor without a sensor does.
   [[nodiscard]] std::optional<double> reserve() {
     constexpr double kGrowth = 1.15;
-    const double coarse_s = std::max(model_only_.options.period_s, model_only_.rules.approach_s / kStepsPerApproach);
+    const double coarse_s = coarse_step_s(model_only_.rules, model_only_.options.period_s);
+    begin(SearchWork::sensor_search);
     return smallest(1.0, kGrowth, [&](double tried) {
       const Guarantee found = guarantee_of(peaks(plan_with(tried), coarse_s, 0));
       return found.over <= (1.0 - model_only_.options.guarantee.confidence) * found.samples;
@@ -111,6 +131,7 @@ class PlanSearch {
   [[nodiscard]] std::optional<Promise> promise(double from) {
     constexpr double kGrowth = 1.02;
     std::optional<Promise> made;
+    begin(SearchWork::sensor_promise);
     const std::optional<double> found = smallest(from, kGrowth, [&](double tried) {
       SensorPlan plan = plan_with(tried);
       std::vector<SensedPeak> fresh = peaks(plan, fine_s(), kStreamsApart);
@@ -125,8 +146,12 @@ class PlanSearch {
   }
 
   /// Simulation step of the check in s.
-  [[nodiscard]] double fine_s() const {
-    return std::max(2.0 * model_only_.options.period_s, model_only_.rules.approach_s / kCheckStepsPerApproach);
+  [[nodiscard]] double fine_s() const { return fine_step_s(model_only_.rules, model_only_.options.period_s); }
+
+  void begin(SearchWork::Stage stage) const {
+    if (work_) {
+      work_->begin(stage);
+    }
   }
 
   [[nodiscard]] const std::vector<LoadPattern>& uses() const { return uses_; }
@@ -139,27 +164,17 @@ class PlanSearch {
 
   template <class IsEnough>
   [[nodiscard]] std::optional<double> smallest(double from, double growth, const IsEnough& is_enough) {
-    return smallest_factor(from, model_only_.observer.heat_safety_factor(), growth, [&](double tried) {
-      const bool enough = is_enough(tried);
-      if (progress_) {
-        ++rounds_;
-        progress_(rounds_, std::max(rounds_ + 1, kUsualRounds));
-      }
-      return enough;
-    });
+    return smallest_factor(from, model_only_.observer.heat_safety_factor(), growth, is_enough);
   }
 
-  /// Typical number of simulations of all drawn motors.
-  static constexpr std::size_t kUsualRounds = 12;
   const motor::Motor& motor_;
   const robot::Robot& robot_;
   const Derating& model_only_;
   const SensorOptions& options_;
-  const base::Progress& progress_;
+  SearchWork* work_;
   std::vector<LoadPattern> uses_;
   std::vector<double> gain_;
   double lag_gain_ratio_ = 0.0;
-  std::size_t rounds_ = 0;
 };
 
 /// Sets bounds that at most about 1 % of the correct sensors violate.
@@ -211,15 +226,24 @@ void require_sensible(const Observer& observer, const SensorOptions& options) {
 
 }  // namespace
 
+void expect_sensor_work(SearchWork& work, const motor::Motor& motor, const BarrierRules& rules, double period_s, std::size_t uses,
+                        int samples) {
+  const std::size_t all = uses * static_cast<std::size_t>(samples);
+  work.expect(SearchWork::sensor_search, kUsualSearches * sensed_work(motor, coarse_step_s(rules, period_s), all));
+  work.expect(SearchWork::sensor_promise, kUsualChecks * sensed_work(motor, fine_step_s(rules, period_s), all));
+  work.expect(SearchWork::sensor_fault, sensed_work(motor, fine_step_s(rules, period_s), uses * kFaultMotors));
+}
+
 SensorPlan plan_sensor(const motor::Motor& as_written, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
-                       const base::Progress& progress) {
+                       SearchWork* work) {
   require_sensible(model_only.observer, options);
   const motor::Motor motor = motor::with_default_spreads(as_written);
-  PlanSearch search(motor, robot, model_only, options, progress);
+  PlanSearch search(motor, robot, model_only, options, work);
   if (const std::optional<double> reserve = search.reserve()) {
     if (std::optional<PlanSearch::Promise> promise = search.promise(*reserve);
         promise && promise->plan.observer.heat_safety_factor() < model_only.observer.heat_safety_factor()) {
       SensorPlan& plan = promise->plan;
+      search.begin(SearchWork::sensor_fault);
       set_check(plan, promise->peaks);
       set_sensor_fault(plan, motor, robot, model_only, search.uses());
       set_lasting(plan, search.loop(plan, search.fine_s()), model_only);

@@ -1,8 +1,8 @@
 // Adds a sensor to a guard: gain, lower safety factor on heat, cross-check, and the effect of an undetected sensor fault.
 #pragma once
 
-#include "base/parallel.h"
 #include "derate/derating.h"
+#include "derate/search_work.h"
 #include "derate/sensed/sensor.h"
 
 namespace heatsoak::derate {
@@ -17,6 +17,10 @@ namespace heatsoak::derate {
 /// Throws Failure: bad_input for a node that the motor lacks or an accuracy that is not positive; cannot_answer if the sensor allows no
 /// lower safety factor.
 SensorPlan plan_sensor(const motor::Motor& motor, const robot::Robot& robot, const Derating& model_only, const SensorOptions& options,
-                       const base::Progress& progress = {});
+                       SearchWork* work = nullptr);
+
+/// Sets the usual work of plan_sensor() with this many uses and drawn motors.
+void expect_sensor_work(SearchWork& work, const motor::Motor& motor, const BarrierRules& rules, double period_s, std::size_t uses,
+                        int samples);
 
 }  // namespace heatsoak::derate
