@@ -977,14 +977,5 @@ TEST(Database, a_broken_file_is_reported_and_not_skipped) {
   }
 }
 
-TEST(Completion, offers_every_verb_and_runs_in_bash) {
-  const ProgramRun result =
-      run_line("source <(heatsoak completion); COMP_WORDS=(heatsoak ''); COMP_CWORD=1; _heatsoak; echo \"${COMPREPLY[@]}\"");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  for (const std::string& verb : verbs()) {
-    EXPECT_THAT(result.out, HasSubstr(verb));
-  }
-}
-
 }  // namespace
 }  // namespace heatsoak

@@ -337,10 +337,6 @@ TEST_F(FrontDoor, a_quiet_list_is_for_scripts) {
     EXPECT_EQ(name.find(' '), std::string::npos) << name;
   }
   EXPECT_GT(count, 10);
-  for (const char* shell : {"bash", "zsh", "fish"}) {
-    const std::string script = run_here(std::string("heatsoak completion ") + shell).out;
-    EXPECT_THAT(script, AllOf(HasSubstr("heatsoak list topics --quiet"), HasSubstr("c_header"))) << shell;
-  }
 }
 
 TEST_F(FrontDoor, verdicts_are_described) {
@@ -422,31 +418,6 @@ TEST_F(FrontDoor, undecided_verdicts_ask_for_more_samples) {
   const double low = after.at("probability_ci95").at(0);
   const double high = after.at("probability_ci95").at(1);
   EXPECT_TRUE(low > 0.05 || high <= 0.05) << low << " " << high;
-}
-
-TEST_F(FrontDoor, completion_scripts_are_sound_where_their_shell_is_there) {
-  ASSERT_EQ(run_here("heatsoak completion bash > b && heatsoak completion zsh > z && heatsoak completion fish > f").exit_code, 0);
-  EXPECT_EQ(run_here("bash -n b").exit_code, 0);
-  for (const auto& [shell, script] : {std::pair("zsh", "z"), {"fish", "f"}}) {
-    if (run_here(std::string("command -v ") + shell).exit_code != 0) {
-      std::cout << "not checked: " << shell << " is not installed\n";
-      continue;
-    }
-    const ProgramRun check = run_here(std::string(shell) + " -n " + script);
-    EXPECT_EQ(check.exit_code, 0) << check.err;
-  }
-}
-
-TEST_F(FrontDoor, bash_completes_lists_and_words) {
-  const auto completed = [this](const std::string& words) {
-    return run_here("heatsoak completion bash > b && bash -c 'source b; COMP_WORDS=(" + words +
-                    "); COMP_CWORD=$((${#COMP_WORDS[@]}-1)); _heatsoak; echo \"${COMPREPLY[@]}\"'")
-        .out;
-  };
-  EXPECT_EQ(completed("heatsoak evaluate --motors maxon_ecx_flat_32l_48v,nanotec_df45l024048"),
-            "maxon_ecx_flat_32l_48v,nanotec_df45l024048_a2\n");
-  EXPECT_EQ(completed("heatsoak evaluate --motors al"), "all\n");
-  EXPECT_EQ(completed("heatsoak generate c"), "core\n");
 }
 
 TEST_F(FrontDoor, man_pages_exist_for_every_verb) {

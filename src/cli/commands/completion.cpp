@@ -63,6 +63,9 @@ std::string bash_script(const std::vector<HelpPage>& pages) {
   return fmt::format(R"bash(# bash completion of heatsoak: source <(heatsoak completion)
 _heatsoak() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}} words='{0}' list= before=
+  # bash makes three words of --robot=x.
+  if [ "$previous" = = ]; then previous=${{COMP_WORDS[COMP_CWORD-2]}}; fi
+  if [ "$current" = = ]; then current=; fi
   case ${{COMP_WORDS[1]}} in
 {1}  esac
   if [ "$COMP_CWORD" -eq 1 ]; then words='{0}'; fi
@@ -91,10 +94,9 @@ std::string zsh_value(std::string_view verb, const HelpOption& option) {
     return "";
   }
   const std::string_view kind = kind_of(verb, option.names.back());
-  const std::string action = !option.choices.empty()           ? fmt::format("({})", fmt::join(option.choices, " "))
-                             : kind.empty()                    ? "_files"
-                             : takes_list(option.names.back()) ? fmt::format("{{_values -s , id all $(heatsoak list {} --quiet)}}", kind)
-                                                               : fmt::format("{{_values id $(heatsoak list {} --quiet)}}", kind);
+  const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
+                             : kind.empty()          ? "_files"
+                                            : fmt::format("{{_heatsoak_{} {}}}", takes_list(option.names.back()) ? "list" : "name", kind);
   return fmt::format(":value:{}", action);
 }
 
@@ -106,7 +108,8 @@ std::string zsh_script(const std::vector<HelpPage>& pages) {
     cases += fmt::format("    {}) _arguments", page.verb);
     for (const HelpOption& option : page.options) {
       if (option.names.back().starts_with("--")) {
-        cases += fmt::format(" \\\n      '{}[{}]{}'", option.names.back(), zsh_quoted(option.meaning), zsh_value(page.verb, option));
+        cases += fmt::format(" \\\n      '{}{}[{}]{}'", option.names.back(), option.takes_value ? "=" : "", zsh_quoted(option.meaning),
+                             zsh_value(page.verb, option));
       } else if (!option.choices.empty() || !kind_of(page.verb, option.names.back()).empty()) {
         cases += fmt::format(" \\\n      '1{}'", zsh_value(page.verb, option));
       }
@@ -115,6 +118,16 @@ std::string zsh_script(const std::vector<HelpPage>& pages) {
   }
   return fmt::format(R"zsh(#compdef heatsoak
 # zsh completion of heatsoak: heatsoak completion zsh > ~/.zfunc/_heatsoak
+# Names of a kind; files if none matches.
+_heatsoak_name() {{
+  local -a heatsoak_names=(${{(f)"$(heatsoak list $1 --quiet 2>/dev/null)"}})
+  compadd -a heatsoak_names || _files
+}}
+# Names separated by commas, or all; files if none matches.
+_heatsoak_list() {{
+  local -a heatsoak_names=(all ${{(f)"$(heatsoak list $1 --quiet 2>/dev/null)"}})
+  _values -s , name $heatsoak_names || _files
+}}
 _heatsoak() {{
   local -a verbs
   verbs=(
@@ -139,21 +152,41 @@ std::string fish_quoted(const std::string& text) {
 }
 
 std::string fish_script(const std::vector<HelpPage>& pages) {
-  std::string text = "# fish completion of heatsoak: heatsoak completion fish > ~/.config/fish/completions/heatsoak.fish\n";
+  std::string text = R"fish(# fish completion of heatsoak: heatsoak completion fish > ~/.config/fish/completions/heatsoak.fish
+function __heatsoak_verb_is
+    set -l words (commandline -opc)
+    set -q words[2]; and test $words[2] = $argv[1]
+end
+# Names of the kind $argv[1] and further words, all after the text $argv[2]; files if none matches.
+function __heatsoak_names
+    set -l word (commandline -ct | string replace -r '^--[^=]*=' '')
+    set -l names "$argv[2]"$argv[3..-1] "$argv[2]"(heatsoak list $argv[1] --quiet 2>/dev/null)
+    set -l matches (string match -- "$word*" $names)
+    if set -q matches[1]
+        string join \n $matches
+    else
+        __fish_complete_path $word
+    end
+end
+# Names separated by commas, or all.
+function __heatsoak_list
+    __heatsoak_names $argv[1] "$(commandline -ct | string replace -r '^--[^=]*=' '' | string replace -r '[^,]*$' '')" all
+end
+)fish";
   for (const HelpPage& page : pages) {
     text += fmt::format("complete -c heatsoak -n __fish_use_subcommand -f -a {} -d '{}'\n", page.verb, fish_quoted(page.summary));
     for (const HelpOption& option : page.options) {
       const std::string_view kind = kind_of(page.verb, option.names.back());
-      const std::string values =
-          !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
-          : kind.empty()          ? ""
-                         : fmt::format(" -f -a '{}(heatsoak list {} --quiet)'", takes_list(option.names.back()) ? "all " : "", kind);
+      const std::string values = !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
+                                 : kind.empty()
+                                     ? ""
+                                     : fmt::format(" -f -a '(__heatsoak_{} {})'", takes_list(option.names.back()) ? "list" : "names", kind);
       if (!option.names.back().starts_with("--")) {
-        text += values.empty() ? "" : fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}'{}\n", page.verb, values);
+        text += values.empty() ? "" : fmt::format("complete -c heatsoak -n '__heatsoak_verb_is {}'{}\n", page.verb, values);
         continue;
       }
-      text += fmt::format("complete -c heatsoak -n '__fish_seen_subcommand_from {}' -l {} -d '{}'{}{}\n", page.verb,
-                          option.names.back().substr(2), fish_quoted(option.meaning), option.takes_value ? " -r" : "", values);
+      text += fmt::format("complete -c heatsoak -n '__heatsoak_verb_is {}' -l {} -d '{}'{}{}\n", page.verb, option.names.back().substr(2),
+                          fish_quoted(option.meaning), option.takes_value ? " -r" : "", values);
     }
   }
   return text;
