@@ -245,17 +245,7 @@ TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_nev
 
 // The header brings its own exponential and power, so that a controller's C library cannot change a bit.
 TEST_P(CHeader, brings_its_own_exponential_and_power) {
-  const std::string laws = R"([effects.air]
-type = "natural_convection"
-conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
-exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
-
-[effects.knee]
-type = "saturation"
-excess = { value = "0.3", origin = "estimated", derivation = "a test" }
-knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
-knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
-)";
+  const std::string laws = kPowerAndExponential;
   const std::string text = header_text(laws);
   EXPECT_THAT(text, testing::AllOf(testing::ContainsRegex("_W = .*heatsoak_exp\\("), testing::ContainsRegex("_W = .*heatsoak_pow\\("),
                                    HasSubstr("static inline float heatsoak_exp(")));

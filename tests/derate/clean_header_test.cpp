@@ -32,19 +32,6 @@ constexpr const char* kStrict =
 /// Advisory rules that the headers do not follow; src/derate/README.md has the reasons.
 const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};
 
-/// Laws with a power and with exponentials.
-constexpr const char* kPowerAndExponential = R"([effects.air]
-type = "natural_convection"
-conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
-exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
-
-[effects.knee]
-type = "saturation"
-excess = { value = "0.3", origin = "estimated", derivation = "a test" }
-knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
-knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
-)";
-
 struct Form {
   const char* name;
   const char* exporter;

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr const char* kChassis = R"([effects.chassis]
+constexpr const char* kChassisInWind = R"([effects.chassis]
 type = "third_node"
 heat_capacity = { value = "60 J/K", origin = "estimated", derivation = "a test" }
 conductance = { value = "0.3 W/K", origin = "estimated", derivation = "a test" }
@@ -119,7 +119,7 @@ TEST_P(Fmu, MotorFollowsTheIntegratorOverRandomMatches) {
 }
 
 TEST_P(Fmu, MotorWithEffectsFollowsTheIntegratorToo) {
-  const motor::Motor motor = ecx_32_with(kChassis);
+  const motor::Motor motor = ecx_32_with(kChassisInWind);
   const Derating derating = derating_of(motor);
   FmuUnit unit(compiled(form("motor"), derating), GetParam());
   std::vector<std::string> outputs;

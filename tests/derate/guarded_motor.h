@@ -104,4 +104,17 @@ inline Derating derating_of(const GuardedMotor& guarded) {
           .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
 }
 
+/// Laws with a power and with exponentials.
+inline constexpr const char* kPowerAndExponential = R"([effects.air]
+type = "natural_convection"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
+
+[effects.knee]
+type = "saturation"
+excess = { value = "0.3", origin = "estimated", derivation = "a test" }
+knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
+knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
+)";
+
 }  // namespace heatsoak::derate

@@ -1,6 +1,6 @@
+// Contents, axes, curves and failures of charts.
 #include "report/chart.h"
 
-#include <expat.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,205 +9,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
-#include <map>
-#include <sstream>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "base/files.h"
+#include "seen_chart.h"
 
 namespace heatsoak::report {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Element {
-  std::string name;
-  std::map<std::string, std::string> attributes;
-  std::string text;
-
-  [[nodiscard]] std::string at(const std::string& key) const {
-    const auto found = attributes.find(key);
-    return found == attributes.end() ? "" : found->second;
-  }
-  [[nodiscard]] double number(const std::string& key) const { return std::stod(at(key)); }
-};
-
-struct Reader {
-  std::vector<Element> elements;
-  bool is_open = false;  ///< the following text belongs to the last element
-};
-
-/// Returns all elements in document order; throws if the text is not well-formed XML.
-std::vector<Element> parsed(const std::string& xml) {
-  Reader reader;
-  XML_Parser parser = XML_ParserCreate(nullptr);
-  XML_SetUserData(parser, &reader);
-  XML_SetElementHandler(
-      parser,
-      [](void* data, const XML_Char* name, const XML_Char** attributes) {
-        Element element{name, {}, {}};
-        for (; *attributes != nullptr; attributes += 2) {
-          element.attributes[attributes[0]] = attributes[1];
-        }
-        static_cast<Reader*>(data)->elements.push_back(element);
-        static_cast<Reader*>(data)->is_open = true;
-      },
-      [](void* data, const XML_Char*) { static_cast<Reader*>(data)->is_open = false; });
-  XML_SetCharacterDataHandler(parser, [](void* data, const XML_Char* text, int length) {
-    if (static_cast<Reader*>(data)->is_open) {
-      static_cast<Reader*>(data)->elements.back().text.append(text, static_cast<std::size_t>(length));
-    }
-  });
-  const bool is_well_formed = XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1) == XML_STATUS_OK;
-  const XML_Error problem = XML_GetErrorCode(parser);
-  XML_ParserFree(parser);
-  if (!is_well_formed) {
-    throw std::runtime_error(std::string("not well-formed: ") + XML_ErrorString(problem));
-  }
-  return reader.elements;
-}
-
-struct Point {
-  double x_px = 0.0;
-  double y_px = 0.0;
-};
-
-/// Returns the coordinates of a `points` or `d` attribute, ignoring letters between them.
-std::vector<Point> points(std::string text) {
-  const auto is_separator = [](char c) { return std::string_view(",MLz\n").find(c) != std::string_view::npos; };
-  std::ranges::replace_if(text, is_separator, ' ');
-  std::istringstream in(text);
-  std::vector<Point> result;
-  for (Point point; in >> point.x_px >> point.y_px;) {
-    result.push_back(point);
-  }
-  return result;
-}
-
-/// A linear axis reconstructed from the places of its tick labels.
-struct SeenAxis {
-  std::vector<double> values;
-  std::vector<double> places_px;
-
-  [[nodiscard]] double px(double value) const {
-    const double slope = (places_px.back() - places_px.front()) / (values.back() - values.front());
-    return places_px.front() + slope * (value - values.front());
-  }
-};
-
-struct SeenPanel {
-  SeenAxis x;
-  SeenAxis y;
-};
-
-/// Finds the panels by their tick labels, which are the grey 12 px texts. The y labels of a panel end at the axis; its centred x labels
-/// follow.
-std::vector<SeenPanel> seen_panels(const std::vector<Element>& elements) {
-  std::vector<SeenPanel> panels;
-  bool was_y_label = false;
-  for (const Element& each : elements) {
-    if (each.name != "text" || each.at("fill") != "#444444") {
-      continue;
-    }
-    const bool is_y_label = each.at("text-anchor") == "end";
-    if (is_y_label && !was_y_label) {
-      panels.emplace_back();
-    }
-    was_y_label = is_y_label;
-    SeenAxis& axis = is_y_label ? panels.back().y : panels.back().x;
-    axis.values.push_back(std::stod(each.text));
-    constexpr double half_capital_height = 0.36;
-    axis.places_px.push_back(is_y_label ? each.number("y") - half_capital_height * each.number("font-size") : each.number("x"));
-  }
-  return panels;
-}
-
-std::vector<std::vector<Point>> lines(const std::vector<Element>& elements, const std::string& color, std::size_t least_points = 3) {
-  std::vector<std::vector<Point>> result;
-  for (const Element& each : elements) {
-    if (each.name == "polyline" && each.at("stroke") == color && points(each.at("points")).size() >= least_points) {
-      result.push_back(points(each.at("points")));
-    }
-  }
-  return result;
-}
-
-std::size_t texts(const std::vector<Element>& elements, const std::string& text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(elements, [&](const Element& each) { return each.name == "text" && each.text == text; }));
-}
-
-bool is_band(const Element& element) { return element.at("fill-opacity") == "0.2"; }
-
-constexpr const char* blue = "#0072b2";
-constexpr const char* red = "#c8102e";
-
-struct Extremes {
-  Point low;
-  Point high;
-};
-
-Extremes extremes(const std::vector<Point>& line) {
-  const auto [high, low] = std::ranges::minmax_element(line, {}, &Point::y_px);  // y points downwards
-  return {*low, *high};
-}
-
-/// First-order warm-up of three motors over 40 min, with the stator panel above the winding panel.
-Chart warm_up() {
-  const std::vector<std::string> names{"maxon_ecx_flat_32l_48v  162 °C", "maxon_ec_45_flat_70w  118 °C", "df45"};
-  const std::vector<double> stator_rise_K{110.0, 80.0, 88.0};
-  Chart chart{.title = "Warm-up", .subtitle = "5 A & 25 °C <measured>", .x_label = "time / min", .panels = {{}, {}}};
-  chart.panels[0].title = "stator";
-  chart.panels[0].y_label = "stator temperature / °C";
-  chart.panels[1].title = "winding";
-  chart.panels[1].y_label = "winding temperature / °C";
-  chart.panels[1].levels = {{"winding limit 155 °C", 155.0}};
-  for (std::size_t motor = 0; motor < names.size(); ++motor) {
-    ChartCurve stator{.name = names[motor], .x = {}, .y = {}, .color_index = static_cast<int>(motor)};
-    ChartCurve winding = stator;
-    for (int second = 0; second <= 2400; second += 10) {
-      const double rise_K = stator_rise_K[motor] * (1.0 - std::exp(-second / 840.0));
-      stator.x.push_back(second / 60.0);
-      stator.y.push_back(25.0 + rise_K);
-      winding.x.push_back(second / 60.0);
-      winding.y.push_back(25.0 + 1.25 * rise_K);
-    }
-    chart.panels[0].curves.push_back(stator);
-    chart.panels[1].curves.push_back(winding);
-  }
-  const ChartCurve& hottest = chart.panels[1].curves[0];
-  ChartBand band{.name = "5 % to 95 %", .x = hottest.x, .low = hottest.y, .high = hottest.y};
-  std::ranges::for_each(band.low, [](double& y) { y -= 8.0; });
-  std::ranges::for_each(band.high, [](double& y) { y += 9.0; });
-  chart.panels[1].bands = {band};
-  return chart;
-}
-
-class ChartTest : public testing::Test {
- protected:
-  void SetUp() override {
-    unsetenv("DISPLAY");
-    folder_ = fs::temp_directory_path() / ("heatsoak_chart_test_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] std::string svg(const Chart& chart) const {
-    base::write_file(folder_ / "chart.svg", draw_svg(chart));
-    std::ifstream in(folder_ / "chart.svg");
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  [[nodiscard]] std::vector<Element> drawn(const Chart& chart) const { return parsed(svg(chart)); }
-  [[nodiscard]] std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
-
-  fs::path folder_;
-};
 
 TEST_F(ChartTest, IsOneSvgWithItsSize) {
   const auto elements = drawn(warm_up());
@@ -288,108 +99,6 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
   EXPECT_NEAR(seen.high.y_px, winding.y.px(chart.panels[1].curves[0].y.back() + 9.0), 1.0);
 }
 
-// A ripple over the whole width leaves no free place on the line, so the name is placed beside the plot, below the legend.
-TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
-  Chart chart = warm_up();
-  ChartCurve& ripple = chart.panels[1].curves[0];
-  for (std::size_t i = 0; i < ripple.y.size(); ++i) {
-    ripple.y[i] = i % 2 == 0 ? 100.0 : 200.0;
-  }
-
-  const auto elements = drawn(chart);
-  const SeenPanel winding = seen_panels(elements).at(1);
-  const auto is_name = [](const Element& each) { return each.name == "text" && each.text == "winding limit 155 °C"; };
-  const auto name = std::ranges::find_if(elements, is_name);
-  const auto last = std::ranges::find_if(elements, [](const Element& each) { return each.name == "text" && each.text == "5 % to 95 %"; });
-
-  ASSERT_NE(name, elements.end());
-  ASSERT_NE(last, elements.end());
-  EXPECT_EQ(name->at("text-anchor"), "") << "it begins there";
-  EXPECT_GT(name->number("x"), winding.x.px(40.0));
-  EXPECT_LT(name->number("x"), winding.x.px(40.0) + 20.0);
-  EXPECT_NEAR(name->number("y"), winding.y.px(155.0), 6.0);
-  EXPECT_GT(name->number("y"), last->number("y") + 12.0);
-}
-
-/// On/off load with a period of 10 s over 40 min: a warm-up with a ripple of 40 K.
-Chart rippled_warm_up() {
-  Chart chart = warm_up();
-  chart.panels.erase(chart.panels.begin());
-  ChartCurve& curve = chart.panels[0].curves[0];
-  curve.x.clear();
-  curve.y.clear();
-  for (int second = 0; second <= 2400; ++second) {
-    const double on_share = second % 10 < 4 ? second % 10 / 4.0 : (10 - second % 10) / 6.0;
-    curve.x.push_back(second / 60.0);
-    curve.y.push_back(25.0 + 80.0 * (1.0 - std::exp(-second / 300.0)) + 40.0 * on_share);
-  }
-  curve.has_ripple = true;
-  chart.panels[0].curves.resize(1);
-  chart.panels[0].bands.clear();
-  return chart;
-}
-
-// A change from line to area within one picture, with a jump to the area's edge, looks like a defect.
-TEST_F(ChartTest, RippleIsOneAreaFromItsFirstPointOn) {
-  const auto elements = drawn(rippled_warm_up());
-  const auto edges = lines(elements, blue);
-  ASSERT_EQ(edges.size(), 2U) << "only the lower and the upper edge";
-  const SeenPanel seen = seen_panels(elements).at(0);
-  for (const std::vector<Point>& edge : edges) {
-    EXPECT_NEAR(edge.front().x_px, seen.x.px(0.0), 1.0);
-    EXPECT_NEAR(edge.front().y_px, seen.y.px(25.0), 1.0) << "both edges begin at the curve's first point";
-    EXPECT_NEAR(edge.back().x_px, seen.x.px(40.0), 10.0);
-  }
-}
-
-TEST_F(ChartTest, RippleThatBeginsLaterIsJoinedToItsLine) {
-  Chart chart = rippled_warm_up();
-  ChartCurve& curve = chart.panels[0].curves[0];
-  curve.name.clear();
-  for (std::size_t i = 0; i < 1200; ++i) {
-    curve.y[i] = curve.y[1200];
-  }
-  const auto pieces = lines(drawn(chart), blue, 2);
-  ASSERT_EQ(pieces.size(), 3U);
-  const auto line = std::ranges::min_element(pieces, {}, [](const std::vector<Point>& each) { return each.back().x_px; });
-  for (const std::vector<Point>& piece : pieces) {
-    if (&piece != &*line) {
-      EXPECT_NEAR(piece.front().x_px, line->back().x_px, 1.0);
-      EXPECT_NEAR(piece.front().y_px, line->back().y_px, 1.0);
-    }
-  }
-}
-
-TEST_F(ChartTest, NamesOfCloseLimitsStandApart) {
-  Chart chart = warm_up();
-  const std::vector<std::string> names{
-      "winding limit of a motor with a long name 150.0 °C", "winding limit of another with a long name 151.5 °C",
-      "winding limit of a third with a long name 153.0 °C", "winding limit of a fourth with a long name 154.5 °C"};
-  chart.panels[1].levels.clear();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    chart.panels[1].levels.push_back({names[i], 150.0 + 1.5 * static_cast<double>(i)});
-  }
-  struct Place {
-    double left_px, right_px, y_px;
-  };
-  std::map<std::string, Place> places;
-  for (const Element& each : drawn(chart)) {
-    if (each.name == "text" && std::ranges::find(names, each.text) != names.end()) {
-      const double width_px = 5.0 * static_cast<double>(each.text.size());  // underestimates the true width
-      const double x_px = each.number("x");
-      const bool ends_there = each.at("text-anchor") == "end";
-      places[each.text] = {ends_there ? x_px - width_px : x_px, ends_there ? x_px : x_px + width_px, each.number("y")};
-    }
-  }
-  ASSERT_EQ(places.size(), names.size());
-  for (const auto& [name, a] : places) {
-    for (const auto& [other, b] : places) {
-      const bool are_beside = a.right_px <= b.left_px || b.right_px <= a.left_px;
-      EXPECT_TRUE(name == other || are_beside || std::abs(a.y_px - b.y_px) >= 11.0) << name << " over " << other;
-    }
-  }
-}
-
 TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   Chart chart = warm_up();
   chart.panels[1].levels = {{"far above", 400.0}, {"far below", -100.0}};
@@ -407,33 +116,6 @@ TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {
   const Extremes plot = extremes(*upright);
   EXPECT_NEAR(plot.high.y_px, winding.y.px(425.0), 1.0);
   EXPECT_NEAR(plot.low.y_px, winding.y.px(-125.0), 1.0);
-}
-
-// A level that may be outside stays in the range if at most a third of the panel is empty; else only its name is shown, at the edge.
-TEST_F(ChartTest, AFarLimitIsAnAnnotation) {
-  Chart chart = warm_up();
-  double lowest = std::numeric_limits<double>::infinity();
-  double high = -lowest;
-  for (const ChartCurve& curve : chart.panels[1].curves) {
-    lowest = std::min(lowest, std::ranges::min(curve.y));
-    high = std::max(high, std::ranges::max(curve.y));
-  }
-  for (const ChartBand& band : chart.panels[1].bands) {
-    lowest = std::min(lowest, std::ranges::min(band.low));
-    high = std::max(high, std::ranges::max(band.high));
-  }
-  const auto is_named = [](const std::vector<Element>& elements, const std::string& name) {
-    return std::ranges::any_of(elements, [&](const Element& each) { return each.name == "text" && each.text == name; });
-  };
-  chart.panels[1].levels = {{"limit", high + 0.48 * (high - lowest), true}};
-  const auto near = drawn(chart);
-  EXPECT_EQ(lines(near, red, 2).size(), 1U);
-  EXPECT_TRUE(is_named(near, "limit"));
-  chart.panels[1].levels = {{"limit", high + 0.6 * (high - lowest), true}, {"lower limit", lowest - (high - lowest), true}};
-  const auto far = drawn(chart);
-  EXPECT_TRUE(lines(far, red, 2).empty());
-  EXPECT_TRUE(is_named(far, "↑ limit"));
-  EXPECT_TRUE(is_named(far, "↓ lower limit"));
 }
 
 TEST_F(ChartTest, NanBreaksLineAndBand) {

@@ -1,0 +1,121 @@
+// Rules for all verbs (interfaces.md). The test finds the verbs in the program's own help.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "program_run.h"
+#include "short_runs.h"
+
+namespace heatsoak {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Returns the verbs that the help lists.
+std::vector<std::string> verbs_of_the_help() {
+  std::istringstream help(run({"--help"}).out);
+  std::vector<std::string> result;
+  bool listed = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line == "Verbs:") {
+      listed = true;
+    } else if (listed && line.starts_with("  ") && !line.starts_with("   ")) {
+      result.push_back(line.substr(2, line.find(' ', 2) - 2));
+    } else if (listed && line.empty()) {
+      break;
+    }
+  }
+  return result;
+}
+
+TEST(Verbs, have_a_reference_page_each) { EXPECT_THAT(verbs_of_the_help(), testing::UnorderedElementsAreArray(verb_names())); }
+
+/// Returns the lines below "Example:" in the help.
+std::vector<std::string> examples(const std::string& verb) {
+  std::istringstream help(run({verb, "--help"}).out);
+  std::vector<std::string> result;
+  bool listed = false;
+  for (std::string line; std::getline(help, line);) {
+    if (line.starts_with("Example")) {
+      listed = true;
+    } else if (listed && !result.empty() && result.back().ends_with('\\')) {
+      result.back().back() = ' ';
+      result.back() += line;
+    } else if (listed && line.starts_with("  ")) {
+      result.push_back(line.substr(2));
+    }
+  }
+  return result;
+}
+
+class Verb : public testing::TestWithParam<std::string> {};
+
+TEST_P(Verb, has_help_on_stdout) {
+  for (const char* option : {"--help", "-h"}) {
+    const ProgramRun result = run({GetParam(), option});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.err, "");
+    EXPECT_THAT(result.out, HasSubstr("Usage: heatsoak " + GetParam()));
+  }
+}
+
+// The examples must run in any folder, because all files that they need are installed.
+TEST_P(Verb, has_an_example_that_runs) {
+  const std::vector<std::string> lines = examples(GetParam());
+  ASSERT_THAT(lines, Not(IsEmpty()));
+  for (const std::string& line : lines) {
+    const TemporaryFolder folder;
+    RunOptions options;
+    options.folder = folder.path();
+    options.environment = {"DISPLAY", "WAYLAND_DISPLAY"};
+    options.time_limit_s = 280;
+    EXPECT_THAT(line, HasSubstr("heatsoak " + GetParam()));
+    const ProgramRun result = run_line(line, options);
+    EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << line << "\nends with " << result.exit_code << "\n" << result.err;
+    EXPECT_THAT(folder.names(), Not(Contains(HasSubstr("partial"))));
+    // The example must have written its declared output files.
+    std::istringstream words(line);
+    std::string before;
+    for (std::string word; words >> word; before = word) {
+      if (before == "--plot" || before == "--out" || (before == "--json" && word != "-")) {
+        EXPECT_TRUE(fs::exists(folder.path() / word)) << word;
+      }
+    }
+  }
+}
+
+TEST_P(Verb, suggests_the_option_that_was_meant) {
+  const ProgramRun result = run({GetParam(), "--hepl"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("did you mean '--help'?"));
+}
+
+TEST_P(Verb, refuses_unknown_words) {
+  for (const Words& wrong : {Words{"--surprise"}, Words{"-Q"}, Words{"--surprise=1"}, Words{"a", "b", "c", "d"}}) {
+    const ProgramRun result = run(Words{GetParam()} + wrong);
+    EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(wrong) << result.out;
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, Not(IsEmpty()));
+    EXPECT_THAT(result.err, Not(HasSubstr("bug")));
+  }
+}
+
+TEST_P(Verb, bears_a_full_disk) {
+  RunOptions full;
+  full.stdout_file = "/dev/full";
+  const ProgramRun result = run({GetParam(), "--help"}, full);
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("stdout cannot be written"));
+}
+
+INSTANTIATE_TEST_SUITE_P(help, Verb, testing::ValuesIn(verb_names()), [](const auto& instance) { return test_name(instance.param); });
+
+}  // namespace
+}  // namespace heatsoak
