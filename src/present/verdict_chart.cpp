@@ -50,15 +50,14 @@ bool coincide(const select::TemperatureCurves& one, const std::vector<double>& o
   return 2 * alike > kLooks;
 }
 
-/// Returns the number of motors with a band. Bands of many motors would cover each other, so only the first two get one then.
-std::size_t bands_of(std::size_t motors) {
-  constexpr std::size_t kMostWithAreas = 4;
-  return motors > kMostWithAreas ? 2 : motors;
+/// Returns whether the bands of these motors stay readable. Those of more motors would cover each other.
+bool has_bands(std::size_t motors) {
+  constexpr std::size_t kMostWithBands = 4;
+  return motors <= kMostWithBands;
 }
 
 report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& shown, bool of_winding, bool has_cycles) {
-  report::ChartPanel result{
-      .title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  report::ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .range_label = "peaks"};
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const select::TemperatureCurves& curves = shown[i]->curves;
@@ -77,9 +76,12 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
       name += fmt::format(" (as {})", (*hides)->motor_id);
     }
     result.curves.push_back({name, in_minutes(curves.time_s), values_of(curves), color, is_hidden, false, has_cycles});
-    if (!curves.band_time_s.empty() && i < bands_of(shown.size())) {
+    if (!curves.band_time_s.empty() && has_bands(shown.size())) {
       result.bands.push_back({"", in_minutes(curves.band_time_s), of_winding ? curves.winding_p05_C : curves.stator_p05_C,
                               of_winding ? curves.winding_p95_C : curves.stator_p95_C, color});
+    }
+    if (const select::Spread95& peak_C = of_winding ? shown[i]->winding_peak_C : shown[i]->stator_peak_C; peak_C.p05 && peak_C.p95) {
+      result.ranges.push_back({*peak_C.p05, *peak_C.p95, peak_C.nominal, color});
     }
     if (of_winding) {
       limits_C[shown[i]->winding_limit_C].push_back(shown[i]->motor_id);
@@ -121,8 +123,8 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
           .subtitle = fmt::format(
               "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
               duty.summary,
-              sampled ? fmt::format("; lines: nominal{}; pale areas{}: 5\u00a0% to 95\u00a0% of samples", of_cycles,
-                                    bands_of(shown.size()) < shown.size() ? " of the first two motors" : "")
+              sampled ? fmt::format("; lines: nominal{}; {}bars of the peaks: 5\u00a0% to 95\u00a0% of samples", of_cycles,
+                                    has_bands(shown.size()) ? "pale areas and " : "")
                       : fmt::format("; nominal values{}", of_cycles),
               estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",

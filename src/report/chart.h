@@ -27,6 +27,14 @@ struct ChartBand {
   int color_index = 0;
 };
 
+/// A range of y, such as that of a peak, drawn as a bar with a mark beside the right end of the curves. The y range includes it.
+struct ChartRange {
+  double low = 0.0;
+  double high = 0.0;
+  double y = 0.0;  ///< the mark
+  int color_index = 0;
+};
+
 /// A horizontal line across the panel, such as a temperature limit. The y range includes it.
 struct ChartLevel {
   std::string name = {};  ///< written at the line
@@ -42,6 +50,8 @@ struct ChartPanel {
   std::string y_label = {};  ///< with unit, "winding temperature / °C"
   std::vector<ChartCurve> curves = {};
   std::vector<ChartBand> bands = {};
+  std::vector<ChartRange> ranges = {};
+  std::string range_label = {};  ///< below the bars of `ranges`
   std::vector<ChartLevel> levels = {};
   bool logarithmic = false;  ///< logarithmic y axis; non-positive values interrupt the line
 };

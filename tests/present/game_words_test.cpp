@@ -12,7 +12,6 @@
 namespace heatsoak::present {
 namespace {
 
-using namespace duty;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -29,6 +28,7 @@ void expect_sentences(const std::vector<std::pair<Finding, const char*>>& senten
 }
 
 TEST(WordsOfGames, Faults) {
+  using namespace duty;
   const RobotName blue{Team::blue, 7};
   expect_sentences<LogFault>({
       {BytesSkipped{5000}, "no valid message here; 5000 bytes skipped"},
@@ -47,6 +47,7 @@ TEST(WordsOfGames, Faults) {
 }
 
 TEST(WordsOfGames, Notes) {
+  using namespace duty;
   expect_sentences<ImportNote>({
       {BytesEndEarly{"the compressed file ends at byte 3, before the end of its data"},
        "the compressed file ends at byte 3, before the end of its data; what came before is used"},
@@ -61,10 +62,10 @@ TEST(WordsOfGames, Notes) {
   });
 }
 
-ImportReport small_report() {
-  ImportReport report;
+duty::ImportReport small_report() {
+  duty::ImportReport report;
   report.format = "csv";
-  report.source = {.kind = PositionSource::Kind::table};
+  report.source = {.kind = duty::PositionSource::Kind::table};
   report.span_s = 12.34;
   report.bytes = 1000;
   report.messages = 30;
@@ -74,6 +75,7 @@ ImportReport small_report() {
 }
 
 TEST(WordsOfGames, ReportCountsWhatWasLeftOut) {
+  using namespace duty;
   ImportReport report = small_report();
   EXPECT_THAT(words_of(report),
               ElementsAre("csv: 30 messages in 1000 bytes, 30 frames of positions in a table over 12.3 s, 29 detections of 0 robots"));
@@ -97,8 +99,8 @@ TEST(WordsOfGames, ReportCountsWhatWasLeftOut) {
   EXPECT_THAT(words_of(report), Contains(HasSubstr("30 frames of no source over")));
 }
 
-GameDemand small_game() {
-  GameDemand game{.player = "blue 7", .log = small_report(), .smoothing = SmoothingReport{}};
+duty::GameDemand small_game() {
+  duty::GameDemand game{.player = "blue 7", .log = small_report(), .smoothing = duty::SmoothingReport{}};
   game.smoothing->points = 200;
   game.smoothing->frame_rate_Hz = 10.0;
   game.smoothing->place = {.bandwidth_Hz = 10.0 / 6.0, .quiet_bandwidth_Hz = 0.5, .quiet_share = 0.25, .noise_m_or_rad = 0.002};
@@ -111,6 +113,7 @@ GameDemand small_game() {
 }
 
 TEST(WordsOfGames, MotionOfThePlayer) {
+  using namespace duty;
   GameDemand game = small_game();
   EXPECT_THAT(
       words_of(game),
@@ -132,6 +135,7 @@ TEST(WordsOfGames, MotionOfThePlayer) {
 }
 
 TEST(WordsOfGames, AFailureHasTheReport) {
+  using namespace duty;
   const base::Failure failure = in_words(GameNotUsable(base::ExitCode::cannot_answer, "no robot", {.log = small_report()}));
   EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
   EXPECT_EQ(failure.message(), "no robot\n" + words_of(small_report()).front());

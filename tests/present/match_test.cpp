@@ -94,5 +94,30 @@ TEST(VerdictChart, draws_one_line_for_a_load_that_does_not_repeat) {
   }
 }
 
+// Bands of many motors would cover each other. The range of every peak is shown for any number of motors.
+TEST(VerdictChart, shows_the_range_of_every_motor) {
+  select::MotorEvaluation motor;
+  motor.curves.time_s = motor.curves.band_time_s = {0.0, 60.0};
+  motor.curves.winding_C = motor.curves.stator_C = {25.0, 30.0};
+  motor.curves.winding_p05_C = motor.curves.stator_p05_C = {25.0, 28.0};
+  motor.curves.winding_p95_C = motor.curves.stator_p95_C = {25.0, 35.0};
+  motor.winding_peak_C = motor.stator_peak_C = {.nominal = 30.0, .p05 = 28.0, .p50 = 30.0, .p95 = 35.0};
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  for (const auto& [motors, bands] : {std::pair(1U, 1U), {4U, 4U}, {6U, 0U}}) {
+    const report::Chart chart = verdict_chart(std::vector(motors, motor), twente(), duty);
+    for (const report::ChartPanel& panel : chart.panels) {
+      EXPECT_EQ(panel.bands.size(), bands);
+      ASSERT_EQ(panel.ranges.size(), motors);
+      EXPECT_EQ(panel.ranges.back().low, 28.0);
+      EXPECT_EQ(panel.ranges.back().high, 35.0);
+      EXPECT_EQ(panel.ranges.back().y, 30.0);
+      EXPECT_EQ(panel.ranges.back().color_index, panel.curves.back().color_index);
+    }
+  }
+  motor.curves.band_time_s.clear();
+  motor.winding_peak_C = motor.stator_peak_C = {.nominal = 30.0};
+  EXPECT_TRUE(verdict_chart({motor}, twente(), duty).panels.front().ranges.empty()) << "without samples";
+}
+
 }  // namespace
 }  // namespace heatsoak::present

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -97,6 +98,37 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
   const Extremes seen = extremes(points(band->at("d")));
   EXPECT_NEAR(seen.low.y_px, winding.y.px(25.0 - 8.0), 1.0);
   EXPECT_NEAR(seen.high.y_px, winding.y.px(chart.panels[1].curves[0].y.back() + 9.0), 1.0);
+}
+
+TEST_F(ChartTest, BarsOfRangesStandBesideTheCurvesAtTheirValues) {
+  Chart chart = warm_up();
+  constexpr int kColor = 6;  // of no curve
+  chart.panels[1].ranges = {{100.0, 150.0, 120.0, kColor}, {50.0, 100.0, 80.0, kColor}};
+  chart.panels[1].range_label = "peaks";
+  const auto elements = drawn(chart);
+  EXPECT_EQ(texts(elements, "peaks"), 1U);
+  const SeenPanel winding = seen_panels(elements).at(1);
+  const double last_px = winding.x.px(40.0);
+  for (const std::vector<Point>& curve : lines(elements, blue)) {
+    EXPECT_LE(curve.back().x_px, last_px + 1.0) << "the curves end before the bars";
+  }
+  // A bar is a line with two caps and a mark.
+  std::vector<std::vector<Point>> upright;
+  for (const std::vector<Point>& line : lines(elements, "#d55e00", 2)) {
+    for (const Point& point : line) {
+      EXPECT_GT(point.x_px, last_px);
+    }
+    if (line.front().x_px == line.back().x_px) {
+      upright.push_back(line);
+    }
+  }
+  ASSERT_EQ(upright.size(), 2U);
+  EXPECT_LT(upright[0].front().x_px, upright[1].front().x_px);
+  for (const auto& [bar, low, high] : {std::tuple(upright[0], 100.0, 150.0), {upright[1], 50.0, 100.0}}) {
+    const Extremes seen = extremes(bar);
+    EXPECT_NEAR(seen.low.y_px, winding.y.px(low), 1.0);
+    EXPECT_NEAR(seen.high.y_px, winding.y.px(high), 1.0);
+  }
 }
 
 TEST_F(ChartTest, EverythingIsInsideThePlotWithHeadroom) {

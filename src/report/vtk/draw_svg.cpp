@@ -131,6 +131,18 @@ void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color,
   }
 }
 
+/// Draws a bar with a cap at each end and a square at its mark.
+void add_bar(vtkChartXY* chart, const RangeBar& bar) {
+  const Color color = palette_color(bar.color_index);
+  const auto across = [&](double y_px, double length_px, double width_px) {
+    add_line(chart, {{bar.x_px - 0.5 * length_px, y_px}, {bar.x_px + 0.5 * length_px, y_px}}, color, width_px, false);
+  };
+  add_line(chart, {{bar.x_px, bar.low_px}, {bar.x_px, bar.high_px}}, color, curve_width_px, false);
+  across(bar.low_px, range_cap_px, curve_width_px);
+  across(bar.high_px, range_cap_px, curve_width_px);
+  across(bar.mark_px, marker_px, marker_px);
+}
+
 /// The axis counts pixels, so that VTK's transform of the plots is the identity. An SVG matrix with unequal scales would distort pens and
 /// dashes.
 void set_axis(vtkAxis* axis, const AxisScale& scale, const std::vector<AxisTick>& axis_ticks) {
@@ -178,6 +190,9 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
       add_curve(chart, curve.has_ripple ? without_ripple(piece) : RippledPiece{{piece}, {}}, palette_color(curve.color_index),
                 curve.dashed);
     }
+  }
+  for (const RangeBar& bar : place.bars) {
+    add_bar(chart, bar);
   }
   for (const ChartLevel& level : panel.levels) {
     if (level.y < up.range.low || level.y > up.range.high) {

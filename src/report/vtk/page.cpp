@@ -26,6 +26,8 @@ constexpr double tick_distance_x_px = 70.0;  // minimum distance
 constexpr double tick_distance_y_px = 36.0;
 constexpr double least_plot_height_px = 60.0;
 constexpr double headroom = 0.05;
+constexpr double range_distance_px = 14.0;  // between two bars
+constexpr double least_ranges_px = 60.0;    // room for the label below the bars
 
 struct LegendEntry {
   std::string name;
@@ -93,6 +95,11 @@ AxisRange y_range(const ChartPanel& panel) {
   for (const ChartBand& band : panel.bands) {
     range.include(band.low);
     range.include(band.high);
+  }
+  for (const ChartRange& each : panel.ranges) {
+    range.include(each.low);
+    range.include(each.high);
+    range.include(each.y);
   }
   const AxisRange of_data = range;
   for (const ChartLevel& level : panel.levels) {
@@ -247,14 +254,43 @@ class PageBuilder {
     const double top_px = y_px_;
     const double bottom_px = y_px_ + plot_px;
     PanelPlace place;
-    place.horizontal = {x_range(chart_), left_px_, right_px_};
+    const AxisRange of_curves = x_range(chart_);
+    const double curves_px = right_px_ - left_px_ - ranges_px();
+    place.horizontal = {of_curves, left_px_, right_px_};
+    place.horizontal.range.high += (of_curves.high - of_curves.low) * ranges_px() / curves_px;
     place.vertical = {y_range(panel), bottom_px, top_px};
-    place.x_ticks = ticks(place.horizontal.range, (right_px_ - left_px_) / tick_distance_x_px);
+    place.x_ticks = ticks(of_curves, curves_px / tick_distance_x_px);
+    add_ranges(panel, left_px_ + curves_px, bottom_px, place);
     place.y_ticks = ticks(place.vertical.range, plot_px / tick_distance_y_px);
     add_y_label(panel, (top_px + bottom_px) / 2.0);
-    add_level_names(panel, place.horizontal, place.vertical);
+    add_level_names(panel, place);
     page_.panels.push_back(std::move(place));
     y_px_ = bottom_px + tick_row_px;
+  }
+
+  /// Returns the width of the widest group of bars; 0 if no panel has ranges.
+  [[nodiscard]] double ranges_px() const {
+    std::size_t most = 0;
+    for (const ChartPanel& panel : chart_.panels) {
+      most = std::max(most, panel.ranges.size());
+    }
+    return most == 0 ? 0.0 : std::max(static_cast<double>(most) * range_distance_px + range_distance_px, least_ranges_px);
+  }
+
+  /// Places the bars side by side to the right of the curves.
+  void add_ranges(const ChartPanel& panel, double left_px, double bottom_px, PanelPlace& place) {
+    if (panel.ranges.empty()) {
+      return;
+    }
+    const double middle_px = 0.5 * (left_px + right_px_);
+    double x_px = middle_px - 0.5 * range_distance_px * (static_cast<double>(panel.ranges.size()) - 1.0);
+    for (const ChartRange& each : panel.ranges) {
+      place.bars.push_back(
+          {x_px, place.vertical.to_px(each.low), place.vertical.to_px(each.high), place.vertical.to_px(each.y), each.color_index});
+      x_px += range_distance_px;
+    }
+    place.x_ticks.push_back({x_range(chart_).high, ""});  // a line between curves and bars
+    add({.text = printable(panel.range_label), .x_px = middle_px, .y_px = bottom_px + 16.0, .style = tick_style, .anchor = Anchor::middle});
   }
 
   void add_y_label(const ChartPanel& panel, double middle_px) {
@@ -281,11 +317,13 @@ class PageBuilder {
 
   /// Places the name of a level above the right end of its line; below it if the top or another level is near; further left if a curve or a
   /// name is in the way; to the right of the panel if there is no free place inside.
-  void add_level_names(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
+  void add_level_names(const ChartPanel& panel, const PanelPlace& place) {
     if (panel.levels.empty()) {
       return;
     }
-    const auto curves = curves_px(panel, horizontal, vertical);
+    const AxisScale& vertical = place.vertical;
+    const auto curves = curves_px(panel, place.horizontal, vertical);
+    const double last_px = right_px_ - ranges_px() - 6.0;
     std::vector<Box> names;
     std::vector<ChartLevel> from_above = panel.levels;
     std::erase_if(from_above, [](const ChartLevel& level) { return level.name.empty() || !std::isfinite(level.y); });
@@ -303,9 +341,7 @@ class PageBuilder {
           taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
         }
       }
-      const auto baseline_at = [&](double y_px) {
-        return Box{right_px_ - 6.0 - width_px, right_px_ - 6.0, y_px - limit_style.size_px, y_px + 3.0};
-      };
+      const auto baseline_at = [&](double y_px) { return Box{last_px - width_px, last_px, y_px - limit_style.size_px, y_px + 3.0}; };
       const Box above = baseline_at(line_px - 5.0);
       const Box below = baseline_at(line_px + 14.0);
       const bool top_is_near = line_px - vertical.high_px < limit_style.size_px + 1.0;
@@ -401,6 +437,11 @@ class PageBuilder {
     for (PanelPlace& place : page_.panels) {
       turn_round(place.vertical.low_px);
       turn_round(place.vertical.high_px);
+      for (RangeBar& bar : place.bars) {
+        turn_round(bar.low_px);
+        turn_round(bar.high_px);
+        turn_round(bar.mark_px);
+      }
     }
     return std::move(page_);
   }

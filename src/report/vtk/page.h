@@ -33,12 +33,23 @@ struct LegendSwatch {
   bool is_dots = false;
 };
 
+/// A bar of a ChartRange, upright at `x_px`.
+struct RangeBar {
+  double x_px = 0.0;
+  double low_px = 0.0;
+  double high_px = 0.0;
+  double mark_px = 0.0;
+  int color_index = 0;
+};
+inline constexpr double range_cap_px = 8.0;  ///< width of the ends of a bar
+
 /// Plot area of one panel.
 struct PanelPlace {
   AxisScale horizontal;
   AxisScale vertical;
   std::vector<AxisTick> x_ticks;
   std::vector<AxisTick> y_ticks;
+  std::vector<RangeBar> bars;
 };
 
 /// Pixel coordinates start at the lower left corner, as in VTK's scene.
