@@ -23,7 +23,7 @@ constexpr double kCheckStepsPerApproach = 30.0;
 /// Usual attempts of search and check, motors that take as long as the sensor fault, and simulations without a sensor that a step of one
 /// with a sensor takes as long as.
 constexpr std::size_t kUsualSearches = 8;
-constexpr std::size_t kUsualChecks = 4;
+constexpr std::size_t kUsualChecks = 3;
 constexpr std::size_t kFaultMotors = 280;
 constexpr double kSimulationsPerStep = 1e-3;
 
