@@ -1,6 +1,7 @@
 #include "simulate/game_drives.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/diagnostic.h"
@@ -61,17 +62,31 @@ std::vector<GameDrives> drive_games(const robot::Robot& robot, const duty::Match
     drives[i].games.resize(drives[i].why_none ? 0 : games);
   });
   const std::size_t jobs = motors.size() * games;
-  base::in_parallel(jobs, options.threads, 0, jobs, progress.begin(kDriving), [&](std::size_t job) {
+  // A game takes seconds, and few are driven at a time, so the parts of each count.
+  constexpr std::size_t kParts = 1000;
+  const base::Progress driving = progress.begin(kDriving);
+  std::atomic<std::size_t> driven_parts = 0;
+  base::in_parallel(jobs, options.threads, [&](std::size_t job) {
+    std::size_t parts = 0;
+    const auto report = [&](std::size_t done, std::size_t all) {
+      const std::size_t now = kParts * done / all;
+      driven_parts += now - parts;
+      parts = now;
+      if (driving) {
+        driving(driven_parts, kParts * jobs);
+      }
+    };
     const std::size_t motor = job / games;
     const std::size_t game = job % games;
-    if (drives[motor].why_none) {
-      return;
+    if (!drives[motor].why_none) {
+      const GuardedCore core(robot, motors[motor], options.guard, guards[motor]);
+      MatchRunOptions run;
+      run.ambient_C = options.ambient_C;
+      run.drive = options.is_sensing_ideal ? ideal_drive() : real_drive(robot, options.seed + game);
+      run.progress = report;
+      drives[motor].games[game] = run_match(played[game], robot, motors[motor], core.config(), run).score;
     }
-    const GuardedCore core(robot, motors[motor], options.guard, guards[motor]);
-    MatchRunOptions run;
-    run.ambient_C = options.ambient_C;
-    run.drive = options.is_sensing_ideal ? ideal_drive() : real_drive(robot, options.seed + game);
-    drives[motor].games[game] = run_match(played[game], robot, motors[motor], core.config(), run).score;
+    report(1, 1);
   });
   return drives;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -256,6 +257,16 @@ TEST(GameDrives, motor_without_rotor_inertia_is_not_driven) {
                                                      std::vector{motor}, {.games = 1, .guard = GuardUse::off});
   ASSERT_TRUE(drives[0].why_none);
   EXPECT_TRUE(std::holds_alternative<NoRotorInertia>(*drives[0].why_none));
+}
+
+/// A game takes seconds, so a report at its end alone would leave the remaining time unknown until then.
+TEST(GameDrives, report_while_a_game_is_driven) {
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
+  std::atomic<int> reports = 0;
+  const base::JobProgress progress([&reports] { return static_cast<double>(++reports); });  // asked for the time of each report
+  drive_games(twente(), dynamic_cast<const duty::MatchDuty&>(*duty.shape_data).inputs(), std::vector{ecx_32()},
+              {.games = 1, .guard = GuardUse::off}, progress);
+  EXPECT_GT(reports, 100);
 }
 
 TEST(GameDrives, do_not_depend_on_threads) {
