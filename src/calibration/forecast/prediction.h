@@ -59,7 +59,7 @@ Prediction predict(const motor::Motor& motor, std::span<const recording::Recordi
 /// A recording, and the motor file that results from a fit without it.
 struct LeftOutRecording {
   recording::Recording recording;
-  std::vector<estimation::MeasuredRun> runs;  ///< of the recording; wrong samples are NaN
+  std::vector<estimation::MeasuredRun> runs;  ///< its runs, in which wrong samples are NaN
   motor::Motor without;
 };
 
