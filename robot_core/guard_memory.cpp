@@ -52,7 +52,8 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
   return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
 }
 
-/// Cools the nodes; `peak_C` becomes the highest temperature of each node in this time. Ignores the time beyond kMostCoolingSteps steps.
+/// Cools the nodes; `peak_C` becomes the highest temperature of each node in this time. The time beyond kMostCoolingSteps steps
+/// cools no node, and warms each one to the hottest surroundings.
 void cool_guard(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
   float signal[kGuardSignals];
   signals_without_power(model, signal);
@@ -74,6 +75,11 @@ void cool_guard(const GuardModel& model, float elapsed_s, float* state_C, float*
       peak_C[node] = larger(peak_C[node], next_C);
     }
     left_s -= this_s;
+  }
+  const bool has_neighbour = model.plausible_range[guard_neighbour_C].is_used;
+  for (int node = 0; node < model.node_count && left_s > 0.0F; ++node) {
+    state_C[node] = larger(state_C[node], has_neighbour ? model.winding_limit_C : model.hottest_ambient_C);
+    peak_C[node] = larger(peak_C[node], state_C[node]);
   }
 }
 

@@ -58,12 +58,13 @@ Document threshold_description(const check::ThresholdType& type) {
 Document command_limits_description() {
   Document document{
       .headline = {{"command: a check of `heatsoak check` with limits on any number of a command's JSON answer"}},
-      .paragraphs = {"The name of a number is the list of keys to it, joined by \".\"; `heatsoak COMMAND … --json -` shows them. An element "
-                     "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
-                     "counts.",
-                     "The unit is that in which the name ends, or of the \"unit\" beside the number. Of a number with a 95 % interval "
-                     "beside it, the worse end is compared. A number that is missing or null fails its limit. The command runs in the "
-                     "folder of the check file and writes no file."}};
+      .paragraphs = {
+          "The name of a number is the list of keys to it, joined by \".\"; `heatsoak COMMAND … --json -` shows them. An element "
+          "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
+          "counts.",
+          "The unit is that in which the name ends, or of the \"unit\" beside the number. Of a number with a 95 % interval "
+          "beside it, the worse end is compared. A number that is missing or null fails its limit. The command runs in the "
+          "folder of the check file and writes no file."}};
   document.listings.push_back({"in a check file:",
                                "[[check]]\n"
                                "name = \"purpose of this check\"\n"

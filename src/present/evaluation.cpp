@@ -11,6 +11,7 @@
 #include "present/closed_loop.h"
 #include "present/motor_notes.h"
 #include "present/robot_notes.h"
+#include "present/verdict_chart.h"
 #include "present/verdict_words.h"
 #include "select/decision.h"
 
@@ -332,9 +333,17 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
 
 }  // namespace
 
+report::Chart evaluation_chart(const simulate::EvaluationAnswer& answer) {
+  report::Chart chart = verdict_chart(answer.results, answer.robot, answer.duty);
+  if (answer.closed_loop) {
+    chart.title = "Without a closed loop: " + chart.title;
+  }
+  return chart;
+}
+
 Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   Document document = ranking_document(answer);
-  add_motor_notes(document, answer.motors);
+  add_motor_notes(document, answer.motors, answer.closed_loop.has_value());
   add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
   if (answer.closed_loop) {
     document.headline.clear();

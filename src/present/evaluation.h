@@ -6,6 +6,7 @@
 
 #include "present/document.h"
 #include "present/json.h"
+#include "report/chart.h"
 #include "select/evaluate.h"
 #include "simulate/evaluation.h"
 
@@ -13,6 +14,8 @@ namespace heatsoak::present {
 
 Document evaluation_document(const simulate::EvaluationAnswer& answer);
 Json evaluation_json(const simulate::EvaluationAnswer& answer);
+/// Picture of the evaluation, which is the one without a closed loop.
+report::Chart evaluation_chart(const simulate::EvaluationAnswer& answer);
 
 /// Returns the winding temperature over time as eight block characters, scaled from ambient (lowest) to the winding limit (highest). Each
 /// shows the maximum of an eighth of the time. Empty without curves.

@@ -56,9 +56,11 @@ std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neig
       const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
       const auto needs = [&](thermal::Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
       const bool needs_neighbour = !has_neighbours && needs(thermal::Signal::neighbour_temperature);
-      if (needs_neighbour || needs(thermal::Signal::age)) {
-        text += fmt::format("{}: {} is left out, because a duty does not state {}\n", motor.id, effect.name,
-                            needs_neighbour ? "the neighbour's temperature" : "the operating hours of the motor");
+      if (needs_neighbour) {
+        text += fmt::format("{}: {} is left out, because a duty does not state the neighbour's temperature\n", motor.id, effect.name);
+      }
+      if (needs(thermal::Signal::age)) {
+        text += fmt::format("{}: {} is that of a new motor, because a duty does not state the operating hours\n", motor.id, effect.name);
       }
     }
   }

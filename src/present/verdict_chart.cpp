@@ -98,6 +98,13 @@ report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& show
   return result;
 }
 
+/// States which of the compared motors the picture shows.
+std::string selection_of(const std::vector<const select::MotorEvaluation*>& shown, std::size_t compared, const robot::Robot& robot) {
+  const bool has_own = std::ranges::find(shown, robot.drive.motor, &select::MotorEvaluation::motor_id) != shown.end();
+  return has_own ? fmt::format("the robot's motor and the best of {}, ", compared)
+                 : fmt::format("the best {} of {}, ", shown.size(), compared);
+}
+
 std::string title_of(const std::vector<select::MotorEvaluation>& results, const robot::Robot& robot, const duty::Duty& duty) {
   const auto count = [&](ShownVerdict verdict) {
     return std::ranges::count_if(results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
@@ -120,13 +127,11 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const bool has_cycles = !duty.shape_data->depends_on_robot();
   const std::string_view of_cycles = has_cycles ? ", highest and lowest of each load cycle" : "";
   return {.title = title_of(results, robot, duty),
-          .subtitle = fmt::format(
-              "{}{}{}{}", shown.size() < results.size() ? fmt::format("the robot's motor and the best of {}, ", results.size()) : "",
-              duty.summary,
-              sampled ? fmt::format("; lines: nominal{}; {}bars of the peaks: 5\u00a0% to 95\u00a0% of samples", of_cycles,
-                                    has_bands(shown.size()) ? "pale areas and " : "")
-                      : fmt::format("; nominal values{}", of_cycles),
-              estimated ? "; thermal data partly estimated" : ""),
+          .subtitle = fmt::format("{}{}{}{}", shown.size() < results.size() ? selection_of(shown, results.size(), robot) : "", duty.summary,
+                                  sampled ? fmt::format("; lines: nominal{}; {}bars of the peaks: 5\u00a0% to 95\u00a0% of samples",
+                                                        of_cycles, has_bands(shown.size()) ? "pale areas and " : "")
+                                          : fmt::format("; nominal values{}", of_cycles),
+                                  estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",
           .panels = {panel(shown, true, has_cycles), panel(shown, false, has_cycles)}};
 }

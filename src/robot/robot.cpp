@@ -256,7 +256,7 @@ void read_wheels(input::Reader& top, Robot& robot) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
   robot.wheels.slip_factor = wheels->quantities(
-      {"slip_factors", "", base::Range::between(0.5, 2.0), "measured speed of each wheel divided by its speed without slip, wheel 1 first"},
+      {"slip_factors", "", base::Range::between(0.9, 1.15), "measured speed of each wheel divided by its speed without slip, wheel 1 first"},
       input::Need::optional);
   if (!robot.wheels.slip_factor.empty() && robot.wheels.slip_factor.size() != robot.wheels.axis_rad.size()) {
     wheels->problem("slip_factors", fmt::format("names {} wheels, axis_angles {}; expected one factor per wheel",

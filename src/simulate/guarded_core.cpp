@@ -43,7 +43,8 @@ robot_core::Config named_config(const robot::Robot& robot, const motor::Motor& m
 
 }  // namespace
 
-GuardedCore::GuardedCore(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
+GuardedCore::GuardedCore(robot::Robot robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard) {
+  robot.wheels.slip_factor.clear();  // simulated wheels slip by the law of [traction]
   const firmware::CoreOptions options = firmware::with_tolerance({}, motor);
   if (use == GuardUse::off || !guard.guard) {
     config_ = named_config(robot, motor, motor.nominal, options);

@@ -40,7 +40,7 @@ class GuardedCore {
  public:
   /// Without a guard in `guard` the use is off. Throws the failures of make_core_config() and, with the guard on, of
   /// require_driving_current().
-  GuardedCore(const robot::Robot& robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard);
+  GuardedCore(robot::Robot robot, const motor::Motor& motor, GuardUse use, const MotorGuard& guard);
   GuardedCore(const GuardedCore&) = delete;
   GuardedCore& operator=(const GuardedCore&) = delete;
 

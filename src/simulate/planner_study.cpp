@@ -62,6 +62,7 @@ StudyResult drive_once(const robot::Robot& robot, const motor::Motor& motor, con
 StudyResult one_case(const robot::Robot& robot, const motor::Motor& motor, const StudyCase& limits, const DriveOptions& options) {
   const bool bang_bang = std::isinf(limits.jerk_m_per_s3);
   robot::Robot limited = robot;
+  limited.wheels.slip_factor.clear();  // simulated wheels slip by the law of [traction]
   limited.limits.acceleration_m_per_s2 = limits.acceleration_m_per_s2;
   limited.limits.braking_m_per_s2 = limits.acceleration_m_per_s2;
   limited.limits.jerk_m_per_s3 = bang_bang ? robot.limits.jerk_m_per_s3 : limits.jerk_m_per_s3;

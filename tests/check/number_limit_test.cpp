@@ -59,7 +59,8 @@ TEST(AnswerNumbers, AreFoundByKeysNamesAndPlaces) {
 }
 
 TEST(AnswerNumbers, ThatAreNotThereSayWhatIs) {
-  EXPECT_THAT(refusal("planners.fast.distance"), HasSubstr("there is no 'distance' in 'planners.fast'; expected one of planner, distance_m, "));
+  EXPECT_THAT(refusal("planners.fast.distance"),
+              HasSubstr("there is no 'distance' in 'planners.fast'; expected one of planner, distance_m, "));
   EXPECT_THAT(refusal("planers.fast"), HasSubstr("there is no 'planers.fast' in the answer; expected one of schema, verdict"));
   EXPECT_THAT(refusal("planners.fast"), HasSubstr("'planners.fast' is no number; expected one of its members: planner, distance_m"));
   EXPECT_THAT(refusal("time_to_limit_s"), HasSubstr("'time_to_limit_s' is null"));
@@ -105,7 +106,8 @@ class CommandChecks : public testing::Test {
   std::vector<Outcome> outcomes(const std::string& limits) {
     text_ = "[[check]]\nname = \"x\"\ncommand = 'heatsoak simulate --motor \"a b\"'\n[check.limits]\n" + limits;
     base::write_file(folder_ / "a.check.toml", text_);
-    file_ = read_check_file(folder_ / "a.check.toml", {kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource});
+    file_ = read_check_file(folder_ / "a.check.toml",
+                            {kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource});
     CommandAnswers answers([this](const std::vector<std::string>& words, const fs::path& folder) {
       ++runs_;
       EXPECT_THAT(words, ElementsAre("simulate", "--motor", "a b"));
@@ -227,6 +229,9 @@ TEST(CommandWords, AreSplitAtSpacesOutsideQuotes) {
     EXPECT_THAT(command_words(wrong).problem, HasSubstr("expected a command with a JSON answer")) << wrong;
   }
   EXPECT_THAT(command_words("derate \"--x").problem, HasSubstr("not closed"));
+  // Their exit code would get lost.
+  EXPECT_THAT(command_words("derate --robot r --check guard.h").problem, HasSubstr("--check has no place in a check"));
+  EXPECT_THAT(command_words("evaluate --fail-on=marginal").problem, HasSubstr("--fail-on has no place in a check"));
 }
 
 }  // namespace

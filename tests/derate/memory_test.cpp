@@ -199,6 +199,22 @@ TEST(MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
   }
 }
 
+// Ten hours are longer than the header follows so slow a body.
+TEST(MemoryOfThreeNodes, SlowBodiesWarmToTheHottestAir) {
+  const CompiledGuard guard(derating_of(ecx_32_with_slow_chassis()), "slow_body");
+  ModelGuard cold(guard);
+  cold.start(25.0F);
+  const std::vector<unsigned char> buffer = with_temperatures(cold.saved(3), {25.0F, 25.0F, 25.0F});
+  for (const float elapsed_s : {36'000.0F, -1.0F}) {
+    ModelGuard after(guard);
+    after.restore(buffer, elapsed_s, 0.0F, 25.0F);
+    for (const float node_C : after.temperatures_C(3)) {
+      EXPECT_GE(node_C, 39.9F) << elapsed_s;
+      EXPECT_LE(node_C, 40.1F) << elapsed_s;
+    }
+  }
+}
+
 TEST_F(Memory, EveryFlippedBitCountsAsAtTheLimit) {
   const std::vector<unsigned char> whole = driven(3000).saved(2);
   for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {

@@ -90,9 +90,7 @@ class IntegerMotor {
       : guard_(guard), state_(static_cast<std::size_t>(guard.function<int()>("q15_size")()) / sizeof(std::int64_t)) {}
 
   void start(int body_mC) { guard_.function<void(void*, std::int32_t)>("q15_start")(state_.data(), body_mC); }
-  int step(int current_mA, int speed_mrad_per_s, int ambient_mC) {
-    return step_(state_.data(), current_mA, speed_mrad_per_s, ambient_mC);
-  }
+  int step(int current_mA, int speed_mrad_per_s, int ambient_mC) { return step_(state_.data(), current_mA, speed_mrad_per_s, ambient_mC); }
   [[nodiscard]] std::vector<double> temperatures_C() const {
     std::vector<std::int64_t> stored(guard_.nodes());
     guard_.function<void(const void*, std::int64_t*)>("q15_stored")(state_.data(), stored.data());
@@ -115,8 +113,8 @@ class IntegerMotor {
  private:
   const IntegerGuard& guard_;
   std::vector<std::int64_t> state_;
-  std::int32_t (*step_)(void*, std::int32_t, std::int32_t, std::int32_t) =
-      guard_.function<std::int32_t(void*, std::int32_t, std::int32_t, std::int32_t)>("q15_step");
+  std::int32_t (*step_)(void*, std::int32_t, std::int32_t,
+                        std::int32_t) = guard_.function<std::int32_t(void*, std::int32_t, std::int32_t, std::int32_t)>("q15_step");
 };
 
 /// Returns a buffer of the same guard with these temperatures and a valid check sum.
@@ -289,6 +287,22 @@ TEST(Q15MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
         EXPECT_GE(after.temperatures_C()[node], exact_C[node] - 0.001) << elapsed_ms << " ms, node " << node;
         EXPECT_LE(after.temperatures_C()[node], exact_C[node] + 1.5) << elapsed_ms << " ms, node " << node;
       }
+    }
+  }
+}
+
+// Ten hours are longer than the header follows so slow a body.
+TEST(Q15MemoryOfThreeNodes, SlowBodiesWarmToTheHottestAir) {
+  const IntegerGuard guard(derating_of(ecx_32_with_slow_chassis()), 3);
+  IntegerMotor cold(guard);
+  cold.start(25'000);
+  const std::vector<unsigned char> buffer = with_stored(cold.saved(), {25.0, 25.0, 25.0});
+  for (const int elapsed_ms : {36'000'000, kUnknownTime_ms}) {
+    IntegerMotor after(guard);
+    after.restore(buffer, elapsed_ms, 0, 25'000);
+    for (const double node_C : after.temperatures_C()) {
+      EXPECT_GE(node_C, 39.9) << elapsed_ms;
+      EXPECT_LE(node_C, 40.1) << elapsed_ms;
     }
   }
 }

@@ -114,6 +114,8 @@ TEST(VerdictChart, shows_the_range_of_every_motor) {
       EXPECT_EQ(panel.ranges.back().color_index, panel.curves.back().color_index);
     }
   }
+  // None of eight is the robot's motor.
+  EXPECT_TRUE(verdict_chart(std::vector(8, motor), twente(), duty).subtitle.starts_with("the best 6 of 8"));
   motor.curves.band_time_s.clear();
   motor.winding_peak_C = motor.stator_peak_C = {.nominal = 30.0};
   EXPECT_TRUE(verdict_chart({motor}, twente(), duty).panels.front().ranges.empty()) << "without samples";

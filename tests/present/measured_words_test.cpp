@@ -219,7 +219,7 @@ TEST(WordsOfCalibration, NotesOfForecasts) {
               ElementsAre("the band of run1 is wider, because its log has a current but no speed: the loss at speed may be anything up to "
                           "4.2 W; if the motor stood still, add speed_rad_per_s = 0",
                           "the band of motor is only an estimate from its declared uncertainties and the usual error of forecasts; "
-                          "`heatsoak calibrate` determines a band",
+                          "`heatsoak calibrate`, or `heatsoak diagnose` with two logs or more, determines a band",
                           "run2 is split into 3 runs: heat or ambient temperature is unknown between them"));
 }
 

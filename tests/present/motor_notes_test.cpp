@@ -41,5 +41,14 @@ TEST(MotorNotes, TheNeighbourIsKnownOnlyWithAllMotorsOfARobot) {
   EXPECT_EQ(inactive_effects({&motor, 1}, kHasNeighbours), "");
 }
 
+// A duty has no age, and the law then takes the motor as new.
+TEST(MotorNotes, AnAgeingEffectIsThatOfANewMotor) {
+  const motor::Motor motor = derate::ecx_32_with(
+      "[effects.c]\ntype = \"contact_ageing\"\nconductance = { value = \"0.1 W/K\", origin = \"estimated\", derivation = \"a test\" }\n"
+      "time_constant = { value = \"2 h\", origin = \"estimated\", derivation = \"a test\" }\n"
+      "fresh_share = { value = \"1\", origin = \"estimated\", derivation = \"a test\" }\n");
+  EXPECT_THAT(inactive_effects({&motor, 1}), HasSubstr("c is that of a new motor"));
+}
+
 }  // namespace
 }  // namespace heatsoak::present

@@ -75,7 +75,7 @@ motor::Motor as_in(const recording::Recording& recording, const motor::Motor& mo
 
 struct FileModel {
   ForecastModel model;
-  Eigen::MatrixXd covariance;  ///< that of θ
+  Eigen::MatrixXd covariance;  ///< the covariance of θ
   double unseen_loss_W = 0.0;  ///< largest loss at a speed that the runs do not contain; 0: none
 };
 

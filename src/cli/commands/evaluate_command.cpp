@@ -15,7 +15,6 @@
 #include "cli/quantity_option.h"
 #include "duty/named_files.h"
 #include "present/evaluation.h"
-#include "present/verdict_chart.h"
 #include "select/candidates.h"
 #include "simulate/evaluation.h"
 
@@ -92,7 +91,7 @@ base::ExitCode run(const EvaluateOptions& options, Session& session) {
       with_progress([&](const base::JobProgress& progress) { return simulate::run_evaluation(job, progress); });
   present::Document document = present::evaluation_document(answer);
   if (session.draws(options.plot)) {
-    session.draw(document, options.plot, present::verdict_chart(answer.results, answer.robot, answer.duty));
+    session.draw(document, options.plot, present::evaluation_chart(answer));
   }
   session.show(document);
   session.answer(present::evaluation_json(answer));

@@ -102,7 +102,7 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
 }
 
 /* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps.
-   Time beyond them is ignored: no cooling. peak_C: highest temperature of each node during this time. */
+   Time beyond them cools no node, and warms each one to the hottest surroundings. peak_C: highest temperature of each node during this time. */
 static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
   @_input off;
   float rate_K_per_s[@NODES@];
@@ -129,6 +129,10 @@ static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *pea
       peak_C[node] = next_C > peak_C[node] ? next_C : peak_C[node];
     }
     left_s -= this_s;
+  }
+  for (node = 0; node < @NODES@ && left_s > 0.0f; ++node) {
+    state_C[node] = state_C[node] > @WARMEST@ ? state_C[node] : @WARMEST@;
+    peak_C[node] = state_C[node] > peak_C[node] ? state_C[node] : peak_C[node];
   }
 }
 
@@ -270,6 +274,7 @@ std::string memory_functions(const Source& source, unsigned signature) {
   }
   const Words words{
       {"@OFF@", unwatched_signals(source, "off")},
+      {"@WARMEST@", plausible_range(source.derating, observed::neighbour).is_used ? "@CAP@_WINDING_LIMIT_C" : "@CAP@_HOTTEST_AMBIENT_C"},
       {"@ON@", unwatched_signals(source, "on") + (has_one_speed ? "  on.speed_rad_per_s = @CAP@_UNKNOWN_SPEED_RAD_PER_S;\n" : "")},
       {"@SPEED_LIST@", has_one_speed ? "" : fmt::format("  const float possible_rad_per_s[@SPEEDS@] = {{{}}};\n", speed_list)},
       {"@SPEED_INDEX@", has_one_speed ? "" : "  int speed;\n"},

@@ -83,11 +83,12 @@ static inline int64_t @_cooling_step_us(const @_input *off, const int64_t *store
   return ((@CAP@_STORED_PER_K / 20) * @CAP@_PERIOD_US) / fastest;
 }
 
-/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them is ignored: no cooling.
-   peak: highest temperature of each node during this time. */
+/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them cools no node, and warms
+   each one to the air. peak: highest temperature of each node during this time. */
 static inline void @_cool(int64_t elapsed_us, int64_t *stored, int64_t *peak) {
   const @_input off = {0, 0, @CAP@_HOTTEST_AMBIENT_MC};
   const int64_t step_us = @_cooling_step_us(&off, stored);
+  const int64_t air = ((int64_t)@CAP@_HOTTEST_AMBIENT_MC * @CAP@_STORED_PER_K) / 1000;
   int64_t change[@NODES@];
   int64_t left_us = elapsed_us;
   int32_t node;
@@ -103,6 +104,10 @@ static inline void @_cool(int64_t elapsed_us, int64_t *stored, int64_t *peak) {
       peak[node] = (stored[node] > peak[node]) ? stored[node] : peak[node];
     }
     left_us -= this_us;
+  }
+  for (node = 0; (node < @NODES@) && (left_us > 0); ++node) {
+    stored[node] = (stored[node] > air) ? stored[node] : air;
+    peak[node] = (stored[node] > peak[node]) ? stored[node] : peak[node];
   }
 }
 

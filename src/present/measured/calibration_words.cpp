@@ -205,9 +205,8 @@ std::string say(const calibration::BandIncludesLossAtSpeed& of) {
 
 std::string say(const calibration::BandIsEstimated& of) {
   return fmt::format(
-      "the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak calibrate` "
-      "determines "
-      "a band",
+      "the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak calibrate`, or "
+      "`heatsoak diagnose` with two logs or more, determines a band",
       of.motor);
 }
 

@@ -11,8 +11,11 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< characters between columns
 
-/// Replaces control characters, which could come from file names and control the terminal.
+/// Replaces control characters, which could come from file names and control the terminal. Lines become parts of one line.
 std::string printable(std::string text) {
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at)) {
+    text.replace(at, 1, "; ");
+  }
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
   return text;
