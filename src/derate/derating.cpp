@@ -289,7 +289,7 @@ class Search {
     return kept(with, *with.uses[index]);
   }
 
-  // Of the motors in the database: attempts of each of the two searches, and simulations that an attempt takes as long as.
+  // Each of the two searches makes this many attempts, and an attempt takes as long as this many simulations (motors of the database).
   static constexpr std::size_t kUsualAttempts = 5;
   static constexpr std::size_t kAttempt = 300;
 

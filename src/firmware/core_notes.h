@@ -22,11 +22,11 @@ struct AirSpeedUnknown {
 };
 /// Effects depend on the motors beside this one: the core uses the hottest of the other wheels' guards.
 struct NeighboursFromGuards {
-  std::vector<std::string> effects;  ///< as above
+  std::vector<std::string> effects;  ///< names; empty for a law of every motor
 };
 /// Effects depend on operating hours: the core uses the age with the most heating.
 struct AgeUnknown {
-  std::vector<std::string> effects;  ///< as above
+  std::vector<std::string> effects;  ///< names; empty for a law of every motor
 };
 /// An effect depends on a log column: the core uses the value with the most heating.
 struct ColumnUnknown {

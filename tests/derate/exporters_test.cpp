@@ -1,4 +1,4 @@
-// What every exporter writes and refuses; JSON and MuJoCo.
+// Tests of all exporters, then of JSON and MuJoCo.
 #include <expat.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -117,13 +117,13 @@ knee_current = { value = "5 A", origin = "estimated", derivation = "a test" }
 knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
 )";
 
-/// The ECX FLAT 32 L with a body that warms for hours.
-inline motor::Motor ecx_32_with_slow_chassis() {
+/// The ECX FLAT 32 L with a third body, such as a chassis, at the stator. Values with units as in a motor file.
+inline motor::Motor ecx_32_with_chassis(const char* heat_capacity, const char* conductance, const char* leak_ratio) {
   const auto estimated = [](const char* key, const char* value) {
     return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
   };
-  return ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", "4000 J/K") +
-                     estimated("conductance", "0.1 W/K") + estimated("leak_ratio", "0"));
+  return ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", heat_capacity) +
+                     estimated("conductance", conductance) + estimated("leak_ratio", leak_ratio));
 }
 
 }  // namespace heatsoak::derate

@@ -171,11 +171,7 @@ TEST_F(Memory, UnsavedTimeOnlyHeats) {
 
 // A chassis warms after the save while winding and stator cool.
 TEST(MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
-  const auto estimated = [](const char* key, const char* value) {
-    return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
-  };
-  const motor::Motor motor = ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", "60 J/K") +
-                                         estimated("conductance", "0.3 W/K") + estimated("leak_ratio", "0.2"));
+  const motor::Motor motor = ecx_32_with_chassis("60 J/K", "0.3 W/K", "0.2");
   const CompiledGuard guard(derating_of(motor), "three_nodes");
   const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   ASSERT_EQ(network.state_count(), 3);
@@ -201,7 +197,7 @@ TEST(MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
 
 // Ten hours are longer than the header follows so slow a body.
 TEST(MemoryOfThreeNodes, SlowBodiesWarmToTheHottestAir) {
-  const CompiledGuard guard(derating_of(ecx_32_with_slow_chassis()), "slow_body");
+  const CompiledGuard guard(derating_of(ecx_32_with_chassis("4000 J/K", "0.1 W/K", "0")), "slow_body");
   ModelGuard cold(guard);
   cold.start(25.0F);
   const std::vector<unsigned char> buffer = with_temperatures(cold.saved(3), {25.0F, 25.0F, 25.0F});

@@ -268,11 +268,7 @@ TEST_F(Q15Memory, UnsavedTimeOnlyHeats) {
 
 // A chassis warms after the save while winding and stator cool.
 TEST(Q15MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
-  const auto estimated = [](const char* key, const char* value) {
-    return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
-  };
-  const motor::Motor motor = ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", "60 J/K") +
-                                         estimated("conductance", "0.3 W/K") + estimated("leak_ratio", "0.2"));
+  const motor::Motor motor = ecx_32_with_chassis("60 J/K", "0.3 W/K", "0.2");
   const IntegerGuard guard(derating_of(motor), 3);
   const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   ASSERT_EQ(network.state_count(), 3);
@@ -293,7 +289,7 @@ TEST(Q15MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
 
 // Ten hours are longer than the header follows so slow a body.
 TEST(Q15MemoryOfThreeNodes, SlowBodiesWarmToTheHottestAir) {
-  const IntegerGuard guard(derating_of(ecx_32_with_slow_chassis()), 3);
+  const IntegerGuard guard(derating_of(ecx_32_with_chassis("4000 J/K", "0.1 W/K", "0")), 3);
   IntegerMotor cold(guard);
   cold.start(25'000);
   const std::vector<unsigned char> buffer = with_stored(cold.saved(), {25.0, 25.0, 25.0});

@@ -162,21 +162,14 @@ std::string unit_in_name(const std::string& name) {
                                                                        {"_C", "°C"},
                                                                        {"_s", "s"},
                                                                        {"_ratio", "1"}};
-  for (const auto& [end, unit] : kUnits) {
-    if (name.ends_with(end)) {
-      return unit;
-    }
-  }
-  return "";
+  const auto found = std::ranges::find_if(kUnits, [&](const auto& end_and_unit) { return name.ends_with(end_and_unit.first); });
+  return found == kUnits.end() ? "" : found->second;
 }
 
 const SignalText* row_of(const std::string& carrier, const std::string& name, Block from) {
-  for (const SignalText& each : robot_core::kSignals) {
-    if (each.carrier == carrier && each.name == name && each.from == from) {
-      return &each;
-    }
-  }
-  return nullptr;
+  const auto row = std::ranges::find_if(
+      robot_core::kSignals, [&](const SignalText& each) { return each.carrier == carrier && each.name == name && each.from == from; });
+  return row == std::ranges::end(robot_core::kSignals) ? nullptr : &*row;
 }
 
 std::string number_of(Block block) { return block == Block::firmware ? "firmware" : text_of(block).number; }

@@ -102,7 +102,7 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
 
 TEST_F(ChartTest, BarsOfRangesStandBesideTheCurvesAtTheirValues) {
   Chart chart = warm_up();
-  constexpr int kColor = 6;  // of no curve
+  constexpr int kColor = 6;  // no curve has this color
   chart.panels[1].ranges = {{100.0, 150.0, 120.0, kColor}, {50.0, 100.0, 80.0, kColor}};
   chart.panels[1].range_label = "peaks";
   const auto elements = drawn(chart);
