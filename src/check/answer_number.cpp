@@ -20,7 +20,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kUnits{
      {"Nm", "N m"}, {"V", "V"},    {"W", "W"},    {"byte", "byte"}, {"g", "g"}, {"kg", "kg"}, {"m", "m"},
      {"m2", "m^2"}, {"mm", "mm"},  {"ohm", "ohm"}, {"rad", "rad"}, {"s", "s"}, {"s2", "s^2"}}};
 
-/// Keys that say which value of a quantity a number is. The quantity, and so the unit, is named by the key around it.
+/// Keys of one value of a quantity, such as its maximum. The enclosing key names the quantity and its unit.
 constexpr std::array<std::string_view, 18> kValueWords{"after", "before", "ci95", "from", "high", "low", "max", "mean", "most",
                                                        "nominal", "p05", "p50", "p95", "rms", "rmse", "sd", "to", "value"};
 
@@ -34,7 +34,7 @@ struct Child {
   const Json* value = nullptr;
 };
 
-/// An element without a text or a whole number in front is named by its place.
+/// Returns the name of a list element: its first value if that is a text or an integer, otherwise its place.
 std::string element_name(const Json& element, std::size_t place) {
   if (element.is_object() && !element.empty()) {
     const Json& first = element.begin().value();
@@ -62,7 +62,7 @@ std::vector<Child> children_of(const Json& group) {
   return all;
 }
 
-/// "a, b, c" with at most twelve names.
+/// Returns at most twelve of the names, separated by commas.
 std::string names_text(const std::vector<Child>& children) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> names;
@@ -84,7 +84,7 @@ struct Trail {
   [[nodiscard]] std::string name() const { return fmt::format("{}", fmt::join(keys, ".")); }
 };
 
-/// Last words of keys whose numbers have no unit, also in a group that has one.
+/// Last words of keys whose numbers never have a unit, even inside a group with a unit.
 constexpr std::array<std::string_view, 7> kPureNumbers{"count", "nats", "normal", "p", "ratio", "samples", "share"};
 
 /// Returns whether the members of a group with a unit in its name have this unit: "limited_s" with a member for each limit does,
