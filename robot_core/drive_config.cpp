@@ -35,8 +35,13 @@ bool are_finite(const Config& config) {
 // A guard waits for up to two of its periods, which are counted in 16 bits.
 constexpr float kMostGuardPeriods = 3e4F;
 
-/// Returns true if a guard period is a whole number of control periods and the guard has a table.
+/// Returns true if a guard period is a whole number of control periods and the guard has a table and resting temperatures.
 [[gnu::cold]] bool is_possible(const GuardModel& guard, float period_s) {
+  for (int node = 0; node < guard.node_count && node < kMostGuardNodes; ++node) {
+    if (!(guard.resting_C[node] >= guard.hottest_ambient_C)) {
+      return false;
+    }
+  }
   const float periods = guard.period_s / period_s;
   const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, kMostGuardPeriods) + 0.5F));
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&

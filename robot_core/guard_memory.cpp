@@ -8,10 +8,7 @@
 namespace robot_core {
 namespace {
 
-constexpr float kStep_share = 0.05F;
-// An Euler step of a twentieth of a time constant cools as much as (1/20 + 1/800) time constants. A node that cools takes its temperature
-// after this share of the time, and one that warms its highest since then.
-constexpr float kCounted_share = 0.97F;
+constexpr float kStep_share = 0.2F;
 constexpr float kVeryLong_s = 1e9F;
 
 /// Signals during power-off: no current, speed or airflow. Unknown temperatures take their highest safe value.
@@ -27,7 +24,7 @@ void signals_without_power(const GuardModel& model, float* signal) {
   }
 }
 
-/// Returns a twentieth of the shortest time constant. No rate exceeds the largest row sum of the derivatives (Gershgorin).
+/// Returns a fifth of the shortest time constant. No rate exceeds the largest row sum of the derivatives (Gershgorin).
 float cooling_step_s(const GuardModel& model, const float* signal, const float* state_C) {
   float moved_C[kMostGuardNodes];
   float rate_K_per_s[kMostGuardNodes];
@@ -52,34 +49,56 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
   return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
 }
 
-/// Cools the nodes; `peak_C` becomes the highest temperature of each node in this time. The time beyond kMostCoolingSteps steps
-/// cools no node, and warms each one to the hottest surroundings.
-void cool_guard(const GuardModel& model, float elapsed_s, float* state_C, float* peak_C) {
+/// One step of the classical method of Runge and Kutta. Raises `peak_C` to the highest temperature of each node during the step; between its
+/// ends a node that first warms and then cools follows a parabola.
+void cool_for(const GuardModel& model, const float* signal, float step_s, float* state_C, float* carry_K, float* peak_C) {
+  float rate_K_per_s[4][kMostGuardNodes];
+  float ahead_C[kMostGuardNodes];
+  model.rates(model.context, signal, state_C, rate_K_per_s[0]);
+  for (int stage = 1; stage < 4; ++stage) {
+    const float ahead_s = stage == 3 ? step_s : 0.5F * step_s;
+    for (int node = 0; node < model.node_count; ++node) {
+      ahead_C[node] = state_C[node] + ahead_s * rate_K_per_s[stage - 1][node];
+    }
+    model.rates(model.context, signal, ahead_C, rate_K_per_s[stage]);
+  }
+  for (int node = 0; node < model.node_count; ++node) {
+    const float first = rate_K_per_s[0][node];
+    const float last = rate_K_per_s[3][node];
+    const float mean = (first + 2.0F * (rate_K_per_s[1][node] + rate_K_per_s[2][node]) + last) * (1.0F / 6.0F);
+    const float change_K = step_s * mean - carry_K[node];
+    const float next_C = state_C[node] + change_K;
+    carry_K[node] = (next_C - state_C[node]) - change_K;
+    state_C[node] = next_C;
+    peak_C[node] = larger(peak_C[node], first > 0.0F && last < 0.0F ? next_C + 0.5F * step_s * last * last / (first - last) : next_C);
+  }
+}
+
+/// Cools the nodes for a time; for an unknown one (negative or NaN) each node takes the highest temperature that it can have had. After
+/// kMostCoolingSteps steps each node is at most as far above its resting temperature as the node that is farthest above.
+void cool_guard(const GuardModel& model, float elapsed_s, float* state_C) {
+  const bool is_known = elapsed_s >= 0.0F;
   float signal[kGuardSignals];
   signals_without_power(model, signal);
-  const float step_s = cooling_step_s(model, signal, state_C);
+  const float longest_s = cooling_step_s(model, signal, state_C);
   float carry_K[kMostGuardNodes] = {};
+  float peak_C[kMostGuardNodes];
   for (int node = 0; node < model.node_count; ++node) {
     peak_C[node] = state_C[node];
   }
-  float left_s = elapsed_s;
+  float left_s = is_known ? elapsed_s : kVeryLong_s;
   for (int step = 0; step < kMostCoolingSteps && left_s > 0.0F; ++step) {
-    const float this_s = smaller(left_s, step_s);
-    float rate_K_per_s[kMostGuardNodes];
-    model.rates(model.context, signal, state_C, rate_K_per_s);
-    for (int node = 0; node < model.node_count; ++node) {
-      const float change_K = this_s * rate_K_per_s[node] - carry_K[node];
-      const float next_C = state_C[node] + change_K;
-      carry_K[node] = (next_C - state_C[node]) - change_K;
-      state_C[node] = next_C;
-      peak_C[node] = larger(peak_C[node], next_C);
-    }
-    left_s -= this_s;
+    const float step_s = smaller(left_s, longest_s);
+    cool_for(model, signal, step_s, state_C, carry_K, peak_C);
+    left_s -= step_s;
   }
-  const bool has_neighbour = model.plausible_range[guard_neighbour_C].is_used;
-  for (int node = 0; node < model.node_count && left_s > 0.0F; ++node) {
-    state_C[node] = larger(state_C[node], has_neighbour ? model.winding_limit_C : model.hottest_ambient_C);
-    peak_C[node] = larger(peak_C[node], state_C[node]);
+  float above_K = 0.0F;
+  for (int node = 0; node < model.node_count; ++node) {
+    above_K = larger(above_K, state_C[node] - model.resting_C[node]);
+  }
+  for (int node = 0; node < model.node_count; ++node) {
+    const float later_C = left_s > 0.0F ? model.resting_C[node] + above_K : state_C[node];
+    state_C[node] = is_known ? later_C : larger(later_C, peak_C[node]);
   }
 }
 
@@ -90,26 +109,21 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
     start_guard(model, state, model.winding_limit_C);
     return Restored::nothing;
   }
-  const bool is_known = elapsed_s >= 0.0F;
   const bool has_board = board_C >= model.coldest_ambient_C - 1.0F && board_C <= 1000.0F;
   const float least_C = has_board ? board_C : model.hottest_ambient_C;
-  float now_C[kMostGuardNodes] = {};
-  float peak_C[kMostGuardNodes] = {};
+  float state_C[kMostGuardNodes] = {};
   for (int node = 0; node < model.node_count; ++node) {
-    now_C[node] = saved.state_C[node];
+    state_C[node] = saved.state_C[node];
   }
-  if (is_known) {
-    cool_guard(model, kCounted_share * elapsed_s, now_C, peak_C);
-  }
-  cool_guard(model, is_known ? (1.0F - kCounted_share) * elapsed_s : kVeryLong_s, now_C, peak_C);
+  cool_guard(model, elapsed_s, state_C);
   start_guard(model, state, model.winding_limit_C);
   for (int node = 0; node < model.node_count; ++node) {
-    state.state_C[node] = larger(peak_C[node], least_C);
+    state.state_C[node] = larger(state_C[node], least_C);
   }
   set_gap(state, gap_s(saved));
   state.hidden_A2 = saved.hidden_A2;
   seal(state);
-  return is_known ? Restored::cooled : Restored::time_unknown;
+  return elapsed_s >= 0.0F ? Restored::cooled : Restored::time_unknown;
 }
 
 namespace {

@@ -19,10 +19,10 @@ enum class Restored {
 
 /// Sets `state` to `saved`, cooled for `elapsed_s` without current in the hottest air. A negative or NaN time is unknown: each node then
 /// gets its highest temperature, heat from the other nodes included. No node is colder than `board_C`; an implausible `board_C` counts as
-/// the hottest air. Evaluates the law at most 2·kMostCoolingSteps times and a few more.
+/// the hottest air. Evaluates the law at most 4·kMostCoolingSteps times and a few more.
 Restored restore_guard(const GuardModel& model, GuardState& state, const GuardState& saved, float elapsed_s, float board_C);
 
-inline constexpr int kMostCoolingSteps = 4096;
+inline constexpr int kMostCoolingSteps = 1024;
 
 /// Restores all guards from an earlier State with the same Config, and goes on with their unfinished periods; call it after start(). The
 /// guard of a wheel without a valid copy starts at its temperature limit. A copy from firmware with another layout of State is not valid.

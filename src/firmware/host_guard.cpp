@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/diagnostic.h"
+#include "derate/power_off.h"
 
 namespace heatsoak::firmware {
 namespace {
@@ -54,6 +55,7 @@ HostGuard::HostGuard(const derate::Derating& derating)
   const derate::CurrentTable& table = derating.table;
   model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
   model_.heat_ratio = static_cast<float>(derating.observer.heat_safety_factor());
+  std::ranges::copy(single(derate::resting_C(derating, derating.observer.rate_steps())), model_.resting_C);
   model_.table.most_current_A = static_cast<float>(table.most_current_A);
   model_.table.straight_below_A = static_cast<float>(table.straight_below_A);
   model_.table.most_speed_rad_per_s = static_cast<float>(table.most_speed_rad_per_s);

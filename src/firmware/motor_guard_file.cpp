@@ -49,15 +49,23 @@ std::string arrays(const robot_core::GuardModel& guard) {
   return text + "\n";
 }
 
+std::string resting_temperatures(const robot_core::GuardModel& guard) {
+  std::string text;
+  for (int node = 0; node < guard.node_count; ++node) {
+    text += fmt::format("{}{}", node == 0 ? "" : ", ", float_literal(guard.resting_C[node]));
+  }
+  return fmt::format("    .resting_C = {{{}}},\n", text);
+}
+
 std::string table(const robot_core::GuardModel& guard) {
   const heatsoak_current_table& table = guard.table;
   return fmt::format(
-      "    .cold_current_A = {},\n    .heat_ratio = {},\n    .table = {{.speed_rad_per_s = {{kSpeed_rad_per_s, {}}},\n"
+      "    .cold_current_A = {},\n    .heat_ratio = {},\n{}    .table = {{.speed_rad_per_s = {{kSpeed_rad_per_s, {}}},\n"
       "              .stator_C = {{kStator_C, {}}},\n              .winding_C = {{kWinding_C, {}}},\n"
       "              .square_A2 = kSquare_A2,\n              .most_current_A = {},\n              .straight_below_A = {},\n"
       "              .most_speed_rad_per_s = {},\n              .no_current_speed_rad_per_s = {},\n"
       "              .winding_per_stator_K = {}}},\n",
-      float_literal(guard.cold_current_A), float_literal(guard.heat_ratio), table.speed_rad_per_s.count, table.stator_C.count,
+      float_literal(guard.cold_current_A), float_literal(guard.heat_ratio), resting_temperatures(guard), table.speed_rad_per_s.count, table.stator_C.count,
       table.winding_C.count, float_literal(table.most_current_A), float_literal(table.straight_below_A),
       float_literal(table.most_speed_rad_per_s), float_literal(table.no_current_speed_rad_per_s),
       float_literal(table.winding_per_stator_K));

@@ -1,6 +1,7 @@
 #include "thermal/steady_state.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "base/copper.h"
@@ -9,56 +10,53 @@
 namespace heatsoak::thermal {
 namespace {
 
-class Rates {
- public:
-  Rates(const Network& network, const OperatingPoint<double>& at)
-      : network_(network), at_(at), values_(network.values()), temperature_C_(static_cast<std::size_t>(network.node_count())) {}
+Eigen::VectorXd rates_at(const RateFunction& rates, const Eigen::VectorXd& state_C) {
+  Eigen::VectorXd rate(state_C.size());
+  const auto count = static_cast<std::size_t>(state_C.size());
+  rates(std::span(state_C.data(), count), std::span(rate.data(), count));
+  return rate;
+}
 
-  Eigen::VectorXd operator()(const Eigen::VectorXd& state_C) {
-    Eigen::VectorXd rate(state_C.size());
-    std::copy(state_C.begin(), state_C.end(), temperature_C_.begin());
-    network_.rate_K_per_s<double>(at_, values_, temperature_C_, std::span(rate.data(), static_cast<std::size_t>(rate.size())));
-    return rate;
+/// Central differences over 2 K: exact except for rounding if the laws are linear in temperature.
+Eigen::MatrixXd jacobian_at(const RateFunction& rates, const Eigen::VectorXd& state_C) {
+  Eigen::MatrixXd result(state_C.size(), state_C.size());
+  for (Eigen::Index i = 0; i < state_C.size(); ++i) {
+    Eigen::VectorXd above = state_C;
+    Eigen::VectorXd below = state_C;
+    above[i] += 1.0;
+    below[i] -= 1.0;
+    result.col(i) = 0.5 * (rates_at(rates, above) - rates_at(rates, below));
   }
-
-  /// Central differences over 2 K: exact except for rounding if the laws are linear in temperature.
-  Eigen::MatrixXd jacobian(const Eigen::VectorXd& state_C) {
-    Eigen::MatrixXd result(state_C.size(), state_C.size());
-    for (Eigen::Index i = 0; i < state_C.size(); ++i) {
-      Eigen::VectorXd above = state_C;
-      Eigen::VectorXd below = state_C;
-      above[i] += 1.0;
-      below[i] -= 1.0;
-      result.col(i) = 0.5 * ((*this)(above) - (*this)(below));
-    }
-    return result;
-  }
-
- private:
-  const Network& network_;
-  OperatingPoint<double> at_;
-  std::vector<double> values_;
-  std::vector<double> temperature_C_;
-};
+  return result;
+}
 
 }  // namespace
 
-std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at) {
+std::optional<SteadyState> steady_state(const RateFunction& rates, std::span<const double> start_C) {
   constexpr int kMostIterations = 50;
-  Rates rates(network, at);
-  Eigen::VectorXd state_C = Eigen::VectorXd::Constant(network.state_count(), at.ambient_C);
+  Eigen::VectorXd state_C = Eigen::Map<const Eigen::VectorXd>(start_C.data(), static_cast<Eigen::Index>(start_C.size()));
   for (int i = 0; i < kMostIterations; ++i) {
-    const Eigen::MatrixXd jacobian = rates.jacobian(state_C);
+    const Eigen::MatrixXd jacobian = jacobian_at(rates, state_C);
     if (jacobian.eigenvalues().real().maxCoeff() >= 0.0) {
       return std::nullopt;
     }
-    const Eigen::VectorXd step_K = jacobian.partialPivLu().solve(rates(state_C));
+    const Eigen::VectorXd step_K = jacobian.partialPivLu().solve(rates_at(rates, state_C));
     state_C -= step_K;
     if (step_K.cwiseAbs().maxCoeff() < 1e-11 * (1.0 + state_C.cwiseAbs().maxCoeff())) {
       return SteadyState{{state_C.begin(), state_C.end()}};
     }
   }
   throw base::Failure(base::ExitCode::numerics_failed, "the steady state was not found in 50 Newton steps");
+}
+
+std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at) {
+  const std::vector<double> values = network.values();
+  std::vector<double> temperature_C(static_cast<std::size_t>(network.node_count()));
+  const auto rates = [&](std::span<const double> state_C, std::span<double> rate_K_per_s) {
+    std::ranges::copy(state_C, temperature_C.begin());
+    network.rate_K_per_s<double>(at, values, temperature_C, rate_K_per_s);
+  };
+  return steady_state(rates, std::vector<double>(static_cast<std::size_t>(network.state_count()), at.ambient_C));
 }
 
 OnOffSteadyState on_off_steady_state(const TwoNodeMotor& motor, const OnOffCurrent& current) {

@@ -1,7 +1,9 @@
 // Steady state of a network at a constant operating point.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "thermal/network.h"
@@ -16,6 +18,11 @@ struct SteadyState {
 /// state (thermal runaway: the copper loss grows faster than the cooling). Throws Failure (numerics_failed) if the iteration does not
 /// converge.
 std::optional<SteadyState> steady_state(const Network& network, const OperatingPoint<double>& at);
+
+/// Writes dT/dt in K/s of all nodes at the temperatures `state_C`.
+using RateFunction = std::function<void(std::span<const double> state_C, std::span<double> rate_K_per_s)>;
+/// The same for any thermal system; Newton's method starts at `start_C`.
+std::optional<SteadyState> steady_state(const RateFunction& rates, std::span<const double> start_C);
 
 /// Current that is switched on and off periodically.
 struct OnOffCurrent {

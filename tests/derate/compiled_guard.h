@@ -19,7 +19,7 @@
 
 namespace heatsoak::derate {
 
-/// Guard of a motor whose laws depend on current, speed and air only.
+/// Guard of a motor; signals other than current, speed and air are 0.
 class CompiledGuard {
  public:
   struct Input {
@@ -93,6 +93,7 @@ void model_temperatures(const void *state, float *to) { memcpy(to, ((const @_sta
 void model_step(void *state, const plain_input *in, plain_output *out) {
   @_input input;
   @_output made;
+  memset(&input, 0, sizeof input);
   input.current_A = in->current_A;
   input.speed_rad_per_s = in->speed_rad_per_s;
   input.ambient_C = in->ambient_C;
@@ -118,6 +119,7 @@ int sensed_restore(void *state, const unsigned char *buffer, float elapsed_s, fl
 void sensed_step(void *state, const plain_input *in, float reading_C, plain_output *out) {
   @_input input;
   @_sensed_output made;
+  memset(&input, 0, sizeof input);
   input.current_A = in->current_A;
   input.speed_rad_per_s = in->speed_rad_per_s;
   input.ambient_C = in->ambient_C;
@@ -136,6 +138,7 @@ void sensed_step(void *state, const plain_input *in, float reading_C, plain_outp
 void resistance_start(void *sensor, float body_C) { @_resistance_start(sensor, body_C); }
 float resistance_reading_C(void *sensor, const void *state, const plain_input *in, float voltage_V) {
   @_input input;
+  memset(&input, 0, sizeof input);
   input.current_A = in->current_A;
   input.speed_rad_per_s = in->speed_rad_per_s;
   input.ambient_C = in->ambient_C;

@@ -10,6 +10,7 @@
 
 #include "compiled_guard.h"
 #include "exported_motor.h"
+#include "powered_off_motor.h"
 #include "thermal/transient.h"
 
 namespace heatsoak::derate {
@@ -79,7 +80,7 @@ TEST_F(Memory, CoolsAsTheNetworkDoesAndNoFaster) {
     const std::vector<float> found_C = after.temperatures_C(2);
     for (std::size_t node = 0; node < 2; ++node) {
       EXPECT_GE(found_C[node], exact.end_C[node] - 0.01) << elapsed_s << " " << node;
-      EXPECT_LE(found_C[node], exact.end_C[node] + 1.5) << elapsed_s << " " << node;
+      EXPECT_LE(found_C[node], exact.end_C[node] + 0.02) << elapsed_s << " " << node;
     }
   }
 }
@@ -189,25 +190,25 @@ TEST(MemoryOfThreeNodes, NoNodeIsColderThanTheNetwork) {
       after.restore(with_temperatures(cold.saved(3), saved_C), static_cast<float>(elapsed_s), 0.0F, 20.0F);
       for (std::size_t node = 0; node < 3; ++node) {
         EXPECT_GE(after.temperatures_C(3)[node], exact.end_C[node] - 0.001) << elapsed_s << " s, node " << node;
-        EXPECT_LE(after.temperatures_C(3)[node], exact.end_C[node] + 1.5) << elapsed_s << " s, node " << node;
+        EXPECT_LE(after.temperatures_C(3)[node], exact.end_C[node] + (elapsed_s > 1000.0 ? 0.3 : 0.02)) << elapsed_s << " s, node " << node;
       }
     }
   }
 }
 
-// Ten hours are longer than the header follows so slow a body.
-TEST(MemoryOfThreeNodes, SlowBodiesWarmToTheHottestAir) {
-  const CompiledGuard guard(derating_of(ecx_32_with_chassis("4000 J/K", "0.1 W/K", "0")), "slow_body");
-  ModelGuard cold(guard);
-  cold.start(25.0F);
-  const std::vector<unsigned char> buffer = with_temperatures(cold.saved(3), {25.0F, 25.0F, 25.0F});
-  for (const float elapsed_s : {36'000.0F, -1.0F}) {
-    ModelGuard after(guard);
-    after.restore(buffer, elapsed_s, 0.0F, 25.0F);
-    for (const float node_C : after.temperatures_C(3)) {
-      EXPECT_GE(node_C, 39.9F) << elapsed_s;
-      EXPECT_LE(node_C, 40.1F) << elapsed_s;
-    }
+// Reference: the solver on the same network. Some times are longer than the header simulates.
+TEST(MemoryOfAnyMotor, NoNodeIsColderThanTheNetwork) {
+  for (const PoweredOffCase& each : powered_off_cases()) {
+    const PoweredOffMotor motor(each);
+    const CompiledGuard guard(motor.derating, each.name);
+    ModelGuard cold(guard);
+    cold.start(40.0F);
+    expect_safe_and_useful(motor, [&](const std::vector<double>& saved_C, double elapsed_s) {
+      ModelGuard after(guard);
+      after.restore(with_temperatures(cold.saved(motor.nodes()), {saved_C.begin(), saved_C.end()}), static_cast<float>(elapsed_s), 0.0F, 0.0F);
+      const std::vector<float> found_C = after.temperatures_C(motor.nodes());
+      return std::vector<double>(found_C.begin(), found_C.end());
+    });
   }
 }
 

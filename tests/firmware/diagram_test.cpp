@@ -434,6 +434,7 @@ TEST(BlockDiagram, RatesAreThoseOfTheCore) {
   guard.period_s = 0.01F;
   guard.winding_limit_C = 155.0F;
   guard.hottest_ambient_C = 40.0F;
+  guard.resting_C[0] = guard.resting_C[1] = 40.0F;
   guard.most_current_A = 9.0F;
   guard.cold_current_A = 9.0F;
   guard.table = {.speed_rad_per_s = {axis, 2},

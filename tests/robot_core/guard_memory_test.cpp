@@ -163,6 +163,19 @@ TEST(GuardMemory, ACopyFromFirmwareWithAnotherLayoutIsRefused) {
   }
 }
 
+// A guard whose data lack them would restore too cold.
+TEST(GuardMemory, AGuardNeedsRestingTemperatures) {
+  const Config whole = make_config(4);
+  for (int node = 0; node < whole.guard->node_count; ++node) {
+    GuardModel model = *whole.guard;
+    model.resting_C[node] = 0.0F;
+    Config config = whole;
+    config.guard = &model;
+    State state;
+    EXPECT_FALSE(start(config, state, {})) << node;
+  }
+}
+
 // Guards need some steps between two restarts.
 TEST(GuardMemory, AGuardThatCouldNotCountForTwoPeriodsStartsAtItsLimit) {
   const Config config = make_config(4);

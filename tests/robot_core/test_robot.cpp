@@ -79,6 +79,8 @@ struct GuardData {
     model.hottest_ambient_C = static_cast<float>(kHottestAir_C);
     model.most_current_A = static_cast<float>(kMostCurrent_A);
     model.heat_ratio = static_cast<float>(kSafetyFactor);
+    // No law makes heat without current: the nodes rest at the temperature of the air.
+    std::fill_n(model.resting_C, model.node_count, static_cast<float>(kHottestAir_C) + 0.01F);
     model.cold_current_A = static_cast<float>(formula_current_A(0.0, 25.0, 25.0));
     model.table = {.speed_rad_per_s = {speed_rad_per_s.data(), kSpeeds},
                    .stator_C = {stator_C.data(), kStators},

@@ -5,6 +5,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
 #include "derate/plausible_range.h"
+#include "derate/power_off.h"
 
 namespace heatsoak::derate::c_header {
 namespace {
@@ -71,8 +72,8 @@ static inline void @_save(const @_state *state, uint8_t *buffer) {
 
 constexpr std::string_view kCool = R"(typedef void (*@_law)(const @_input *, const float *, float *);
 
-/* Longest Euler step at these temperatures: 1/20 of a lower bound of the shortest time constant. Its rate is at most the largest row sum
-   of the absolute derivatives (Gershgorin). */
+/* Length of a cooling step at these temperatures: 1/5 of a lower bound of the shortest time constant. Its rate is at most the largest row
+   sum of the absolute derivatives (Gershgorin). */
 static inline float @_cooling_step_s(@_law law, const @_input *off, const float *state_C) {
   float moved_C[@NODES@];
   float rate_K_per_s[@NODES@];
@@ -98,57 +99,68 @@ static inline float @_cooling_step_s(@_law law, const @_input *off, const float 
   for (node = 0; node < @NODES@; ++node) {
     fastest_per_s = sum_per_s[node] > fastest_per_s ? sum_per_s[node] : fastest_per_s;
   }
-  return fastest_per_s > 0.0f ? 0.05f / fastest_per_s : @CAP@_PERIOD_S;
+  return fastest_per_s > 0.0f ? 0.2f / fastest_per_s : @CAP@_PERIOD_S;
 }
 
-/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps.
-   Time beyond them cools no node, and warms each one to the hottest surroundings. peak_C: highest temperature of each node during this time. */
-static inline void @_cool(@_law law, float elapsed_s, float *state_C, float *peak_C) {
+/* One step of the classical method of Runge and Kutta. peak_C: raised to the highest temperature of each node during the step; between its
+   ends a node that first warms and then cools follows a parabola. */
+static inline void @_cool_for(@_law law, const @_input *off, float step_s, float *state_C, float *carry_K, float *peak_C) {
+  float rate_K_per_s[4][@NODES@];
+  float ahead_C[@NODES@];
+  int node;
+  int stage;
+  law(off, state_C, rate_K_per_s[0]);
+  for (stage = 1; stage < 4; ++stage) {
+    const float ahead_s = stage == 3 ? step_s : 0.5f * step_s;
+    for (node = 0; node < @NODES@; ++node) {
+      ahead_C[node] = state_C[node] + ahead_s * rate_K_per_s[stage - 1][node];
+    }
+    law(off, ahead_C, rate_K_per_s[stage]);
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    const float first = rate_K_per_s[0][node];
+    const float last = rate_K_per_s[3][node];
+    const float mean = (first + 2.0f * (rate_K_per_s[1][node] + rate_K_per_s[2][node]) + last) / 6.0f;
+    const float change_K = step_s * mean - carry_K[node];
+    const float next_C = state_C[node] + change_K;
+    const float top_C = first > 0.0f && last < 0.0f ? next_C + 0.5f * step_s * last * last / (first - last) : next_C;
+    carry_K[node] = (next_C - state_C[node]) - change_K;
+    state_C[node] = next_C;
+    peak_C[node] = top_C > peak_C[node] ? top_C : peak_C[node];
+  }
+}
+
+/* Cools without current in the hottest air; elapsed_s negative or NaN: for an unknown time, so that each node takes the highest temperature
+   that it can have had. In the time beyond the largest number of steps, each node is at most as far above its resting temperature as the
+   node that is farthest above. */
+static inline void @_cool(@_law law, const float *resting_C, float elapsed_s, float *state_C) {
+  const bool is_known = elapsed_s >= 0.0f;
   @_input off;
-  float rate_K_per_s[@NODES@];
   float carry_K[@NODES@];
-  float step_s;
-  float left_s = elapsed_s;
+  float peak_C[@NODES@];
+  float left_s = is_known ? elapsed_s : 1e9f;
+  float above_K = 0.0f;
+  float longest_s;
   int node;
   int step;
   @_clear((unsigned char *)&off, (int)sizeof off);
   off.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
-@OFF@  step_s = @_cooling_step_s(law, &off, state_C);
+@OFF@  longest_s = @_cooling_step_s(law, &off, state_C);
   for (node = 0; node < @NODES@; ++node) {
     peak_C[node] = state_C[node];
     carry_K[node] = 0.0f;
   }
   for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
-    const float this_s = left_s < step_s ? left_s : step_s;
-    law(&off, state_C, rate_K_per_s);
-    for (node = 0; node < @NODES@; ++node) {
-      const float change_K = this_s * rate_K_per_s[node] - carry_K[node];
-      const float next_C = state_C[node] + change_K;
-      carry_K[node] = (next_C - state_C[node]) - change_K;
-      state_C[node] = next_C;
-      peak_C[node] = next_C > peak_C[node] ? next_C : peak_C[node];
-    }
-    left_s -= this_s;
+    const float step_s = left_s < longest_s ? left_s : longest_s;
+    @_cool_for(law, &off, step_s, state_C, carry_K, peak_C);
+    left_s -= step_s;
   }
-  for (node = 0; node < @NODES@ && left_s > 0.0f; ++node) {
-    state_C[node] = state_C[node] > @WARMEST@ ? state_C[node] : @WARMEST@;
-    peak_C[node] = state_C[node] > peak_C[node] ? state_C[node] : peak_C[node];
-  }
-}
-
-/* Highest temperature that each node can have after elapsed_s; negative or NaN: unknown, so at any time since the save. An Euler step of
-   1/20 of a time constant cools as 1/20 + 1/800 of one would. A node that cools therefore takes its temperature after 97 % of the time,
-   and one that warms its highest since then. */
-static inline void @_rest(@_law law, float elapsed_s, float *state_C) {
-  float peak_C[@NODES@];
-  const bool is_known = elapsed_s >= 0.0f;
-  int node;
-  if (is_known) {
-    @_cool(law, 0.97f * elapsed_s, state_C, peak_C);
-  }
-  @_cool(law, is_known ? 0.03f * elapsed_s : 1e9f, state_C, peak_C);
   for (node = 0; node < @NODES@; ++node) {
-    state_C[node] = peak_C[node];
+    above_K = state_C[node] - resting_C[node] > above_K ? state_C[node] - resting_C[node] : above_K;
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    const float later_C = left_s > 0.0f ? resting_C[node] + above_K : state_C[node];
+    state_C[node] = is_known || later_C > peak_C[node] ? later_C : peak_C[node];
   }
 }
 
@@ -173,7 +185,7 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
   }
   @_clear((unsigned char *)&on, (int)sizeof on);
   on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
-@ON@  for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
+@ON@  for (step = 0; step < @CAP@_MOST_HEATING_STEPS && left_s > 0.0f; ++step) {
     @_clear((unsigned char *)most_K_per_s, (int)sizeof most_K_per_s);
 @LOADS@    for (node = 0; node < @NODES@; ++node) {
       const float next_C = state_C[node] + @CAP@_PERIOD_S * most_K_per_s[node];
@@ -233,8 +245,8 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     @_heat(@_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
     @_heat(@_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
   }
-  @_rest(@_rates, elapsed_s, state->state_C);
-  @_rest(@_nominal_rates, elapsed_s, state->nominal_C);
+  @_cool(@_rates, @_resting_C, elapsed_s, state->state_C);
+  @_cool(@_nominal_rates, @NOMINAL_RESTING@, elapsed_s, state->nominal_C);
   for (node = 0; node < @NODES@; ++node) {
     state->state_C[node] = state->state_C[node] > least_C ? state->state_C[node] : least_C;
     state->nominal_C[node] = state->nominal_C[node] > least_C ? state->nominal_C[node] : least_C;
@@ -247,34 +259,44 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
 
 )";
 
-/// Assigns worst-case values to signals that are unknown without power: a neighbour at its limit, and the largest age.
+/// Assigns worst-case values to signals that are unknown without power.
 std::string unwatched_signals(const Source& source, std::string_view input) {
+  const auto values = signals_without_power(source.derating);
   std::string text;
   for (const observed::Signal signal : source.signals) {
     if (signal == observed::neighbour) {
       text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
     } else if (signal == observed::age) {
-      text += fmt::format("  {}.{} = {};\n", input, name_of(signal),
-                          literal(std::ranges::max(plausible_range(source.derating, signal).values)));
+      text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(values[signal]));
     }
   }
   return text;
+}
+
+/// Constants with the temperatures to which the nodes cool.
+std::string resting_temperatures(const Source& source, const std::vector<double>& guard_C, const std::vector<double>& nominal_C) {
+  std::string text = "\n/* Resting temperatures: steady state of the nodes without current in the hottest air, rounded up. */\n" +
+                     array(source.prefix + "_resting_C", guard_C);
+  return nominal_C == guard_C ? text : text + array(source.prefix + "_nominal_resting_C", nominal_C);
 }
 
 }  // namespace
 
 std::string memory_functions(const Source& source, unsigned signature) {
   const std::size_t nodes = source.derating.observer.state_count();
-  constexpr int kMostCoolingSteps = 4096;
+  constexpr int kMostCoolingSteps = 1024;
+  constexpr int kMostHeatingSteps = 4096;
   const std::vector<float> speeds = plausible_range(source.derating, observed::speed).values;
   const bool has_one_speed = speeds.size() == 1;
   std::string speed_list;
   for (const float speed_rad_per_s : speeds) {
     speed_list += (speed_list.empty() ? "" : ", ") + literal(speed_rad_per_s);
   }
+  const std::vector<double> guard_C = resting_C(source.derating, source.derating.observer.rate_steps());
+  const std::vector<double> nominal_C = resting_C(source.derating, source.derating.observer.nominal_rate_steps());
   const Words words{
       {"@OFF@", unwatched_signals(source, "off")},
-      {"@WARMEST@", plausible_range(source.derating, observed::neighbour).is_used ? "@CAP@_WINDING_LIMIT_C" : "@CAP@_HOTTEST_AMBIENT_C"},
+      {"@NOMINAL_RESTING@", nominal_C == guard_C ? "@_resting_C" : "@_nominal_resting_C"},
       {"@ON@", unwatched_signals(source, "on") + (has_one_speed ? "  on.speed_rad_per_s = @CAP@_UNKNOWN_SPEED_RAD_PER_S;\n" : "")},
       {"@SPEED_LIST@", has_one_speed ? "" : fmt::format("  const float possible_rad_per_s[@SPEEDS@] = {{{}}};\n", speed_list)},
       {"@SPEED_INDEX@", has_one_speed ? "" : "  int speed;\n"},
@@ -284,9 +306,9 @@ std::string memory_functions(const Source& source, unsigned signature) {
       {"@CAP@", source.capital},
       {"@NODES@", std::to_string(nodes)},
       {"@", source.prefix}};
-  return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n", source.capital, signature,
-                     kMostCoolingSteps) +
-         replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
+  return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n#define {0}_MOST_HEATING_STEPS {3}\n",
+                     source.capital, signature, kMostCoolingSteps, kMostHeatingSteps) +
+         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
 }
 
 }  // namespace heatsoak::derate::c_header

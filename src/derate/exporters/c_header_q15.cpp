@@ -15,6 +15,7 @@
 #include "derate/integer_form/integer_memory.h"
 #include "derate/integer_form/quantised_table.h"
 #include "derate/plausible_range.h"
+#include "derate/power_off.h"
 
 namespace heatsoak::derate::exporters {
 namespace {
@@ -328,6 +329,14 @@ std::string plausible_ranges(const Derating& derating) {
   return text;
 }
 
+std::vector<std::int64_t> resting_temperatures(const Derating& derating) {
+  std::vector<std::int64_t> stored;
+  for (const double node_C : resting_C(derating, derating.observer.rate_steps())) {
+    stored.push_back(static_cast<std::int64_t>(std::ceil(std::ldexp(node_C, kStoredBits))));
+  }
+  return stored;
+}
+
 std::string write_c_header_q15(const Derating& derating) {
   require_finite(derating);
   require_three_signals("c_header_q15", derating);
@@ -349,7 +358,8 @@ std::string write_c_header_q15(const Derating& derating) {
                               {"@CAP@", capital},
                               {"@", prefix}};
   const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
-  constexpr int kMostCoolingSteps = 4096;
+  constexpr int kMostCoolingSteps = 1024;
+  constexpr int kMostHeatingSteps = 4096;
   const auto period_us = static_cast<std::int64_t>(std::ceil(1e6 * derating.options.period_s));
   return c_header::wrapped(
       head(derating, prefix, lines, table) +
@@ -360,12 +370,15 @@ std::string write_c_header_q15(const Derating& derating) {
       define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
       fmt::format("#define {0}_STORED_PER_K INT64_C({1})\n#define {0}_STARTED 0x48454154u\n#define {0}_PERIOD_US INT64_C({2})\n", capital,
                   std::int64_t{1} << kStoredBits, period_us) +
-      fmt::format("#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_SAVED_SIZE {2}\n#define {0}_MOST_COOLING_STEPS {3}\n\n", capital,
-                  guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps) +
+      fmt::format("#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_SAVED_SIZE {2}\n#define {0}_MOST_COOLING_STEPS {3}\n"
+                  "#define {0}_MOST_HEATING_STEPS {4}\n\n", capital,
+                  guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps, kMostHeatingSteps) +
       structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
       (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
       changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
-      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) + "\n" + c_header::replaced(kStep, words) + "\n" +
+      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) +
+      "/* Resting temperatures: steady state of the nodes without current in the hottest air, rounded up. */\n" +
+      integers("int64_t", prefix + "_resting", resting_temperatures(derating)) + "\n" + c_header::replaced(kStep, words) + "\n" +
       integer_form::integer_memory(words) + "#endif\n");
 }
 

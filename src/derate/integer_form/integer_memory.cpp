@@ -53,8 +53,8 @@ static inline void @_stored_changes(const @_input *input, const int64_t *stored,
   @_changes(input, state_C, change);
 }
 
-/* Longest Euler step at these temperatures: 1/20 of a lower bound of the shortest time constant. Its rate is at most the largest row sum
-   of the absolute derivatives (Gershgorin). */
+/* Length of a cooling step at these temperatures: 1/5 of a lower bound of the shortest time constant. Its rate is at most the largest row
+   sum of the absolute derivatives (Gershgorin). */
 static inline int64_t @_cooling_step_us(const @_input *off, const int64_t *stored) {
   int64_t moved[@NODES@];
   int64_t change[@NODES@];
@@ -80,49 +80,64 @@ static inline int64_t @_cooling_step_us(const @_input *off, const int64_t *store
   for (node = 0; node < @NODES@; ++node) {
     fastest = (sum[node] > fastest) ? sum[node] : fastest;
   }
-  return ((@CAP@_STORED_PER_K / 20) * @CAP@_PERIOD_US) / fastest;
+  return ((@CAP@_STORED_PER_K / 5) * @CAP@_PERIOD_US) / fastest;
 }
 
-/* Cool-down without current in the hottest air, in at most @CAP@_MOST_COOLING_STEPS steps. Time beyond them cools no node, and warms
-   each one to the air. peak: highest temperature of each node during this time. */
-static inline void @_cool(int64_t elapsed_us, int64_t *stored, int64_t *peak) {
+/* One step of the classical method of Runge and Kutta, rounded up. peak: raised to the highest temperature of each node during the step;
+   between its ends a node that first warms and then cools follows a parabola. */
+static inline void @_cool_for(const @_input *off, int64_t step_us, int64_t *stored, int64_t *peak) {
+  int64_t change[4][@NODES@];
+  int64_t ahead[@NODES@];
+  int32_t node;
+  int32_t stage;
+  @_stored_changes(off, stored, change[0]);
+  for (stage = 1; stage < 4; ++stage) {
+    const int64_t ahead_us = (stage == 3) ? step_us : (step_us / 2);
+    for (node = 0; node < @NODES@; ++node) {
+      ahead[node] = stored[node] + ((change[stage - 1][node] * ahead_us) / @CAP@_PERIOD_US) + 1;
+    }
+    @_stored_changes(off, ahead, change[stage]);
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    const int64_t first = change[0][node];
+    const int64_t last = change[3][node];
+    const int64_t mean = ((first + (2 * (change[1][node] + change[2][node])) + last) / 6) + 1;
+    int64_t top = stored[node] + ((mean * step_us) / @CAP@_PERIOD_US) + 1;
+    stored[node] = top;
+    if ((first > 0) && (last < 0)) {
+      top += (((-last * step_us) / @CAP@_PERIOD_US) / ((2 * (first - last)) / -last)) + 1;
+    }
+    peak[node] = (top > peak[node]) ? top : peak[node];
+  }
+}
+
+/* Cools without current in the hottest air; elapsed_ms negative: for an unknown time, so that each node takes the highest temperature that
+   it can have had. In the time beyond the largest number of steps, each node is at most as far above its resting temperature as the node
+   that is farthest above. */
+static inline void @_cool(int32_t elapsed_ms, int64_t *stored) {
   const @_input off = {0, 0, @CAP@_HOTTEST_AMBIENT_MC};
-  const int64_t step_us = @_cooling_step_us(&off, stored);
-  const int64_t air = ((int64_t)@CAP@_HOTTEST_AMBIENT_MC * @CAP@_STORED_PER_K) / 1000;
-  int64_t change[@NODES@];
-  int64_t left_us = elapsed_us;
+  const int64_t longest_us = @_cooling_step_us(&off, stored);
+  const bool is_known = elapsed_ms >= 0;
+  int64_t left_us = is_known ? ((int64_t)elapsed_ms * 1000) : INT64_C(1000000000000000);
+  int64_t peak[@NODES@];
+  int64_t above = 0;
   int32_t node;
   int32_t step;
   for (node = 0; node < @NODES@; ++node) {
     peak[node] = stored[node];
   }
   for (step = 0; (step < @CAP@_MOST_COOLING_STEPS) && (left_us > 0); ++step) {
-    const int64_t this_us = (left_us < step_us) ? left_us : step_us;
-    @_stored_changes(&off, stored, change);
-    for (node = 0; node < @NODES@; ++node) {
-      stored[node] += ((change[node] * this_us) / @CAP@_PERIOD_US) + 1;
-      peak[node] = (stored[node] > peak[node]) ? stored[node] : peak[node];
-    }
-    left_us -= this_us;
+    const int64_t step_us = (left_us < longest_us) ? left_us : longest_us;
+    @_cool_for(&off, step_us, stored, peak);
+    left_us -= step_us;
   }
-  for (node = 0; (node < @NODES@) && (left_us > 0); ++node) {
-    stored[node] = (stored[node] > air) ? stored[node] : air;
-    peak[node] = (stored[node] > peak[node]) ? stored[node] : peak[node];
-  }
-}
-
-/* Highest temperature that each node can have after elapsed_ms; negative: unknown, so at any time since the save. An Euler step of 1/20 of
-   a time constant cools as 1/20 + 1/800 of one would. A node that cools therefore takes its temperature after 97 % of the time, and one
-   that warms its highest since then. */
-static inline void @_rest(int32_t elapsed_ms, int64_t *stored) {
-  int64_t peak[@NODES@];
-  int32_t node;
-  if (elapsed_ms >= 0) {
-    @_cool((int64_t)elapsed_ms * 970, stored, peak);
-  }
-  @_cool((elapsed_ms >= 0) ? ((int64_t)elapsed_ms * 30) : INT64_C(1000000000000000), stored, peak);
   for (node = 0; node < @NODES@; ++node) {
-    stored[node] = peak[node];
+    const int64_t this_above = stored[node] - @_resting[node];
+    above = (this_above > above) ? this_above : above;
+  }
+  for (node = 0; node < @NODES@; ++node) {
+    const int64_t later = (left_us > 0) ? (@_resting[node] + above) : stored[node];
+    stored[node] = (is_known || (later > peak[node])) ? later : peak[node];
   }
 }
 
@@ -144,7 +159,7 @@ static inline void @_heat(int32_t unsaved_ms, int64_t *stored) {
   for (node = 0; node < @NODES@; ++node) {
     most = (stored[node] > most) ? stored[node] : most;
   }
-  for (step = 0; (step < @CAP@_MOST_COOLING_STEPS) && (left_us > 0); ++step) {
+  for (step = 0; (step < @CAP@_MOST_HEATING_STEPS) && (left_us > 0); ++step) {
     for (node = 0; node < @NODES@; ++node) {
       largest[node] = 0;
     }
@@ -193,7 +208,7 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, i
   if (unsaved_ms != 0) {
     @_heat(unsaved_ms, state->stored);
   }
-  @_rest(elapsed_ms, state->stored);
+  @_cool(elapsed_ms, state->stored);
   for (node = 0; node < @NODES@; ++node) {
     state->stored[node] = (state->stored[node] > least) ? state->stored[node] : least;
   }

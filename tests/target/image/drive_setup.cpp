@@ -44,6 +44,7 @@ constexpr robot_core::GuardModel make_guard() {
   guard.most_current_A = kMostCurrent_A;
   guard.cold_current_A = 17.2919F;
   guard.heat_ratio = kSafetyFactor;
+  guard.resting_C[0] = guard.resting_C[1] = 40.01F;
   guard.table = {.speed_rad_per_s = {kSpeed_rad_per_s, 1},
                  .stator_C = {kStator_C, kStators},
                  .winding_C = {kWinding_C, kWindings},
