@@ -136,15 +136,15 @@ void step_valid(const Config& config, State& state, const Input& input, Output& 
   state.check_sum = check_sum_of(state);
 }
 
-/// Restarts State. After a single flipped bit the known faults are kept; memory that was never started keeps nothing.
+/// Restarts a State with flipped bits; the known faults are kept. Memory that was never started stays invalid, because only start() has the
+/// time to check the Config.
 [[gnu::cold, gnu::noinline]] void restart(const Config& config, State& state) {
   const ComparisonState known = state.comparison;
   const std::uint32_t flips = state.is_valid ^ kStarted;
   if ((flips & (flips - 1)) != 0) {
-    start(config, state, {});
+    state = {};
     return;
   }
-  // start() has accepted this Config; its check sum would take longer than a step may.
   begin(config, state, kNoSample);
   recall_faults(known, state);
   state.battery_source_V = config.battery_full_V;
@@ -158,11 +158,11 @@ void step(const Config& config, State& state, const Input& input, Output& out) {
   if (is_corrupted) {
     restart(config, state);
   }
-  if (state.is_valid != kStarted) {
-    open_all(state, Reason::config_invalid, out);
-  } else if (is_corrupted) {
+  if (is_corrupted) {
     // The restart takes as long as a step.
     open_all(state, Reason::state_corrupted, out);
+  } else if (state.is_valid != kStarted) {
+    open_all(state, Reason::config_invalid, out);
   } else {
     step_valid(config, state, input, out);
   }

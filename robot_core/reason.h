@@ -9,9 +9,10 @@
 // |--------|-------------------------------------------------------------|---------------------------------------------------|---------------------------------|
 // | 100 R  | start() found that Config fails its check sum or holds an   | all bridges open                                  | start() with a valid Config     |
 // |        | impossible value                                            |                                                   |                                 |
-// | 101 R  | State fails its check sum (bit flip, never started)         | bridges open for this step; State restarts, keeps | next step; guard cools down     |
+// | 101 R  | State fails its check sum: a bit flip                       | bridges open for this step; State restarts, keeps | next step; guard cools down     |
 // |        |                                                             | known faults, guard at its limit. ComparisonState |                                 |
 // |        |                                                             | fails: currents distrusted, limp current for all  | sensors agree again             |
+// |        | State was never started, or several bits of its mark flip   | all bridges open                                  | start()                         |
 // | 102 R  | Input::elapsed_s not finite or below half a period          | all bridges open for this step; the guard counts  | next valid step                 |
 // |        |                                                             | the largest current for kWatchdog_s if the bridge |                                 |
 // |        |                                                             | was not open before                               |                                 |

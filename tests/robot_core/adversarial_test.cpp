@@ -6,15 +6,13 @@
 // K_t·n/R. Excluded, because the core cannot know it:
 //   - for the coldest motor only, a wheel that slips while its own sensor is faulty: the other sensors know a rolling wheel only. The
 //     excess is at most K_t·n·(speed − implied speed)/R; slip_A() calculates it from the true speeds, and the test subtracts it;
-//   - more faulty speed sensors (wheels, gyro) at once than spare ones. Two swapped sensors count as two faults; three wheels have one
-//     spare sensor, but the core assumes swapped ones until it would have found them;
 //   - a battery sensor that is wrong by a constant factor or offset since the start or before another fault of it, or sinks more slowly
 //     than a battery does (0.4 %/s);
 //   - a wrong command with plausible values: the twin gets it too.
-// Tests 1.1e7 steps with a hostile input or state, which is one that a fault has changed: no true current exceeds the limits. Steps before
-// and after the faults are not counted. They are single faults and combinations of three with at most one faulty speed sensor. Swapped
-// sensors and combinations of any kind may exceed the limits, but not by more than the slip. With HEATSOAK_HOSTILE_FACTOR=30, two of 8100
-// combinations with at most one faulty speed sensor exceed the limits by up to 1.2 A more than the slip: both have two battery faults.
+// Tests more than 1e7 steps with a hostile input or state, which is one that a fault has changed. Steps before and after the faults are not
+// counted. They are single faults, and combinations of any three; a part of these has at most one faulty speed sensor. No true current
+// exceeds the limits. With HEATSOAK_HOSTILE_FACTOR=60 (6.6e7 hostile steps) episodes with two faulty speed sensors exceed them, in four
+// steps by up to 0.31 A, and six of 25200 combinations exceed the slip of the coldest motor by up to 1.2 A.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -278,10 +276,9 @@ void print_head() {
 constexpr int kEpisodesPerFactor = 3;
 constexpr int kDefaultFactor = 11;
 constexpr int kCombinationsPerEpisode = 30;
-constexpr int kUncoveredPerEpisode = 5;  ///< combinations whose currents are only compared with the slip
-// Hostile steps with asserted currents: of single faults except swapped sensors, and of covered combinations.
+constexpr int kUncoveredPerEpisode = 5;
 constexpr long kLeastHostile_single = 4'500'000;
-constexpr long kLeastHostile_combined = 5'500'000;
+constexpr long kLeastHostile_combined = 7'000'000;
 static_assert(kLeastHostile_single + kLeastHostile_combined >= 10'000'000);
 
 int factor() {
@@ -311,10 +308,8 @@ TEST(Adversarial, SingleLiesDriveNoMoreCurrentThanTheTruthAllows) {
         EXPECT_EQ(tally.non_finite, 0) << name_of(lie);
         EXPECT_LT(tally.hottest_C, kWindingLimit_C) << name_of(lie);
         EXPECT_EQ(tally.unexplained, 0) << name_of(lie) << ", worst in episode " << tally.worst_episode;
-        if (lie != Lie::wheel_swapped) {  // counts as two faults
-          EXPECT_EQ(tally.excesses, 0) << name_of(lie);
-          hostile += tally.hostile;
-        }
+        EXPECT_EQ(tally.excesses, 0) << name_of(lie);
+        hostile += tally.hostile;
         if (lie == Lie::none) {
           EXPECT_EQ(tally.alarms_of_twin, 0);
         }
@@ -362,10 +357,8 @@ TEST(Adversarial, CombinationsOfLies) {
         print(is_covered ? "three, at most one of speed" : "three of any kind", wheels, are_currents_fitted, tally);
         EXPECT_EQ(tally.non_finite, 0);
         EXPECT_LT(tally.hottest_C, kWindingLimit_C);
-        if (is_covered) {
-          EXPECT_EQ(tally.excesses, 0);
-          hostile += tally.hostile;
-        }
+        EXPECT_EQ(tally.excesses, 0);
+        hostile += tally.hostile;
         EXPECT_EQ(tally.unexplained, 0) << "worst in episode " << tally.worst_episode;
       }
     }

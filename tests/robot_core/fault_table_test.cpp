@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <set>
 #include <vector>
@@ -46,6 +47,27 @@ TEST(FaultTable, state_corrupted) {
       {.code = Reason::state_corrupted, .periods = 1, .spoil = [](Input&, State& state, int) { state.wheel[2].integral_V += 1.0F; }}, 0, 0);
   EXPECT_TRUE(record.was_open_at_end);
   EXPECT_GE(record.hottest_guard_C, kWindingLimit_C - 1.0);
+}
+
+// Only start() checks the Config, which takes longer than a step may.
+TEST(FaultTable, state_corrupted_without_a_start_stays_open) {
+  const Config config = make_config(4);
+  const Plant plant(config, {});
+  Random random(5);
+  for (const unsigned char fill : {0x00, 0x5a, 0xff}) {
+    State state;
+    std::memset(static_cast<void*>(&state), fill, sizeof(state));
+    for (int k = 0; k < 20; ++k) {
+      const Output out = robot_core::step(config, state, plant.sense(random, 0.3F, true));
+      EXPECT_EQ(out.robot_reason, Reason::state_corrupted) << k;
+      for (int i = 0; i < config.wheel_count; ++i) {
+        EXPECT_TRUE(out.is_open[i]);
+        EXPECT_EQ(out.winding_C[i], 0.0F);
+      }
+    }
+    ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+    EXPECT_EQ(robot_core::step(config, state, plant.sense(random, 0.3F, true)).robot_reason, Reason::none);
+  }
 }
 
 TEST(FaultTable, period_invalid) {
