@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include "base/diagnostic.h"
 #include "base/files.h"
 #include "base/quantity.h"
+#include "base/unit_names.h"
 
 namespace heatsoak::input {
 namespace {
@@ -128,10 +128,8 @@ class Table {
 
   /// Suggests a column for a missing one: the same quantity in another unit, to be converted, or a similar name.
   [[nodiscard]] std::string confounded_with(const std::string& name) const {
-    constexpr std::array<std::string_view, 8> kUnits{"_rad_per_s", "_Nm", "_rad", "_A", "_V", "_C", "_s", "_m"};
-    const auto* const unit = std::ranges::find_if(kUnits, [&](std::string_view each) { return name.ends_with(each); });
-    if (unit != kUnits.end()) {
-      const std::string quantity = name.substr(0, name.size() - unit->size()) + "_";
+    if (const std::optional<base::UnitOfName> known = base::unit_of_name(name)) {
+      const std::string quantity = fmt::format("{}_", known->quantity);
       const auto other = std::ranges::find_if(header_, [&](const std::string& each) { return each.starts_with(quantity); });
       if (other != header_.end()) {
         return fmt::format("; '{}' is in another unit: convert its values and name the column '{}'", *other, name);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 #include <set>
 
+#include "base/unit_names.h"
 #include "source_text.h"
 
 namespace heatsoak::lint {
@@ -171,9 +171,11 @@ std::vector<NamedNumber> floating_point_names(std::string_view header) {
 }
 
 bool ends_in_unit(std::string_view name) {
-  static const std::string kUnit = "(A2|A|V2|V|W|Nm|N|ohm|H|F|Wb|s3|s2|s|ms|us|min|h|C|K|J|rad2|rad|deg|m2|m|mm|kg_m2|kg|Hz|rpm|px|nats)";
-  static const std::regex kEnd("[A-Za-z0-9]_(" + kUnit + "|per_" + kUnit + ")(_per_" + kUnit + ")*_?$");
-  return std::regex_search(name.begin(), name.end(), kEnd);
+  if (name.ends_with('_')) {
+    name.remove_suffix(1);
+  }
+  // Pixels occur in code alone.
+  return name.ends_with("_px") || !base::unit_of_name(name).value_or(base::UnitOfName{}).unit.empty() || name.ends_with("_nats");
 }
 
 bool is_unitless_by_nature(std::string_view name) {

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <set>
+#include <initializer_list>
+#include <map>
+#include <utility>
 
+#include "base/unit_names.h"
 #include "base/version.h"
 #include "base/xml_text.h"
 #include "derate/export_text.h"
@@ -12,31 +14,30 @@
 namespace heatsoak::derate {
 namespace {
 
-struct FmuUnit {
-  std::string_view suffix;  ///< suffix of variable names; longer suffixes come first
-  std::string_view name;
-  std::string_view base;  ///< attributes of the element BaseUnit, the same in FMI 2.0 and 3.0
-};
-constexpr std::array kUnits{FmuUnit{"_rad_per_s2", "rad/s2", R"(rad="1" s="-2")"},
-                            FmuUnit{"_rad_per_s", "rad/s", R"(rad="1" s="-1")"},
-                            FmuUnit{"_m_per_s", "m/s", R"(m="1" s="-1")"},
-                            FmuUnit{"_A", "A", R"(A="1")"},
-                            FmuUnit{"_C", "degC", R"(K="1" offset="273.15")"},
-                            FmuUnit{"_h", "h", R"(s="1" factor="3600")"},
-                            FmuUnit{"_s", "s", R"(s="1")"}};
-
 std::string number(double value) { return fmt::format("{}", rounded_to_12_digits(value)); }
 
+/// Returns the attributes of the element BaseUnit, which are the same in FMI 2.0 and 3.0.
+std::string base_unit(const base::SiUnit& unit) {
+  std::string text;
+  const std::initializer_list<std::pair<std::string_view, int>> exponents{{"kg", unit.kg}, {"m", unit.m}, {"rad", unit.rad},
+                                                                          {"s", unit.s},   {"A", unit.A}, {"K", unit.K}};
+  for (const auto& [name, exponent] : exponents) {
+    text += exponent != 0 ? fmt::format(" {}=\"{}\"", name, exponent) : "";
+  }
+  text += unit.factor != 1.0 ? fmt::format(" factor=\"{}\"", number(unit.factor)) : "";
+  return text + (unit.offset_K != 0.0 ? fmt::format(" offset=\"{}\"", number(unit.offset_K)) : "");
+}
+
 std::string units(const FmuModel& model) {
-  std::set<std::string_view> used;
+  std::map<std::string, base::SiUnit> used;
   for (const FmuVariable& each : model.variables) {
-    used.insert(each.unit);
+    if (const std::string unit = fmu_unit(each); !unit.empty()) {
+      used[unit] = base::unit_of_name(each.name)->si;
+    }
   }
   std::string text = "  <UnitDefinitions>\n";
-  for (const FmuUnit& each : kUnits) {
-    if (used.contains(each.name)) {
-      text += fmt::format("    <Unit name=\"{}\"><BaseUnit {}/></Unit>\n", each.name, each.base);
-    }
+  for (const auto& [name, si] : used) {
+    text += fmt::format("    <Unit name=\"{}\"><BaseUnit{}/></Unit>\n", name, base_unit(si));
   }
   return text + "  </UnitDefinitions>\n";
 }
@@ -84,7 +85,8 @@ std::string attributes(const FmuVariable& variable, std::size_t reference) {
 }
 
 std::string start_and_unit(const FmuVariable& variable) {
-  return (variable.unit.empty() ? "" : fmt::format(" unit=\"{}\"", variable.unit)) +
+  const std::string unit = fmu_unit(variable);
+  return (unit.empty() ? "" : fmt::format(" unit=\"{}\"", unit)) +
          (has_start(variable) ? fmt::format(" start=\"{}\"", number(variable.value)) : "");
 }
 
@@ -110,13 +112,12 @@ constexpr std::string_view kLogCategories =
 
 }  // namespace
 
-std::string_view fmu_unit(std::string_view variable) {
-  for (const FmuUnit& each : kUnits) {
-    if (variable.ends_with(each.suffix)) {
-      return each.name;
-    }
-  }
-  return {};
+std::string fmu_unit(const FmuVariable& variable) {
+  const std::optional<base::UnitOfName> found =
+      variable.type == FmuType::real ? base::unit_of_name(variable.name) : std::nullopt;
+  std::string unit = found ? found->unit : "";
+  std::erase(unit, '^');
+  return unit;
 }
 
 std::string description_fmi2(const FmuModel& model, std::span<const std::string> compiled) {

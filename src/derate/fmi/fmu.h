@@ -16,8 +16,7 @@ enum class FmuType { real, boolean, enumeration };
 
 /// A variable of the unit. Its index in the list is its value reference.
 struct FmuVariable {
-  std::string name;       ///< a C identifier
-  std::string_view unit;  ///< unit from fmu_unit(); empty if none
+  std::string name;  ///< a C identifier; a real variable has the unit in which it ends, fmu_unit()
   FmuCausality causality = FmuCausality::input;
   FmuType type = FmuType::real;
   double value = 0.0;  ///< start value; ignored for outputs
@@ -62,8 +61,8 @@ std::vector<FmuFile> fmu_tables(const FmuModel& model, std::string_view more);
 
 /// Returns the value with at most 12 digits, such as "0.5" or "25.0"; in parentheses if negative.
 std::string fmu_number(double value);
-/// Returns the unit for the suffix of a variable's name, such as "degC" for "winding_C"; empty if the suffix states none.
-std::string_view fmu_unit(std::string_view variable);
+/// Returns the unit in which the name of a real variable ends, such as "degC" of "winding_C"; empty if there is none.
+std::string fmu_unit(const FmuVariable& variable);
 
 /// Returns every file of the unit, sources and description, sorted by path.
 std::vector<FmuFile> fmu_files(const FmuModel& model, FmiVersion version);

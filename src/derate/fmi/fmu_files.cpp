@@ -32,7 +32,7 @@ std::string documentation(const FmuModel& model) {
       "<pre>\n{2}</pre>\n<table>\n<tr><th>variable</th><th>unit</th><th>meaning</th></tr>\n",
       base::xml_text(model.identifier), base::xml_text(model.description), base::xml_text(model.provenance));
   for (const FmuVariable& each : model.variables) {
-    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, each.unit, base::xml_text(each.description));
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", each.name, fmu_unit(each), base::xml_text(each.description));
   }
   return text + "</table>\n<p>Inputs are held over a communication step. Temperatures are in degrees Celsius.</p>\n</body>\n</html>\n";
 }

@@ -17,7 +17,7 @@ constexpr FmuItem kReasons[] = {{"full", "all that a cold motor may draw at this
                                 {"not_started", "the state was not started or damaged: taken as hot as the limit"}};
 
 std::vector<FmuVariable> guard_variables(const Derating& derating) {
-  std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
+  std::vector<FmuVariable> all{{"time_s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<observed::Signal>(i))) {
       const std::string name(observed::signals()[i].name);
@@ -25,21 +25,20 @@ std::vector<FmuVariable> guard_variables(const Derating& derating) {
       const double start = i == observed::ambient     ? derating.rules.hottest_ambient_C
                            : i == observed::neighbour ? derating.rules.limits.winding_C
                                                       : 0.0;
-      all.push_back({name, fmu_unit(name), FmuCausality::input, FmuType::real, start, std::string(observed::signals()[i].meaning)});
+      all.push_back({name, FmuCausality::input, FmuType::real, start, std::string(observed::signals()[i].meaning)});
     }
   }
-  all.push_back({"start_C", "degC", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,
+  all.push_back({"start_C", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,
                  "temperature of the whole motor at the start; after a long rest that of the board"});
   const auto output = [&all](std::string name, FmuType type, std::string description) {
-    all.push_back({std::move(name), "", FmuCausality::output, type, 0.0, std::move(description), true});
-    all.back().unit = type == FmuType::real ? fmu_unit(all.back().name) : std::string_view();
+    all.push_back({std::move(name), FmuCausality::output, type, 0.0, std::move(description), true});
   };
   output("allowed_current_A", FmuType::real, "equivalent DC current, magnitude, until the next call");
   output("guarded_winding_C", FmuType::real, "pessimistic; sets the allowed current");
   output("nominal_winding_C", FmuType::real, "motor with nominal values; for display only");
   output("reason", FmuType::enumeration, "reason for the allowed current");
   output("is_limiting", FmuType::boolean, "whether the guard allows less than to a cold motor, and less than the driver's largest current");
-  all.push_back({"limp_current_A", "A", FmuCausality::constant, FmuType::real, limp_current_A(derating),
+  all.push_back({"limp_current_A", FmuCausality::constant, FmuType::real, limp_current_A(derating),
                  "continuous current at every speed, for a wheel of unknown speed"});
   return all;
 }

@@ -36,13 +36,13 @@ void require_expressible(const Derating& derating, std::string_view exporter) {
 
 std::vector<FmuVariable> motor_variables(const Derating& derating) {
   constexpr double kRoom_C = 25.0;
-  std::vector<FmuVariable> all{{"time_s", "s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
+  std::vector<FmuVariable> all{{"time_s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<observed::Signal>(i))) {
       const observed::SignalSpec& signal = observed::signals()[i];
       const std::string name(signal.name);
       all.push_back(
-          {name, fmu_unit(name), FmuCausality::input, FmuType::real, fmu_unit(name) == "degC" ? kRoom_C : 0.0,
+          {name, FmuCausality::input, FmuType::real, name.ends_with("_C") ? kRoom_C : 0.0,
            i == observed::current
                ? "equivalent DC current (torque per torque constant), rms over the step, with the sign of the speed when the motor drives"
            : i == observed::ambient ? "air around the motor"
@@ -50,22 +50,22 @@ std::vector<FmuVariable> motor_variables(const Derating& derating) {
     }
   }
   for (const std::string& node : derating.observer.state_names()) {
-    all.push_back({identifier(node) + "_start_C", "degC", FmuCausality::parameter, FmuType::real, kRoom_C, "temperature at the start"});
+    all.push_back({identifier(node) + "_start_C", FmuCausality::parameter, FmuType::real, kRoom_C, "temperature at the start"});
   }
   for (const std::string& node : derating.observer.state_names()) {
-    all.push_back({identifier(node) + "_C", "degC", FmuCausality::output, FmuType::real, 0.0, fmt::format("temperature of {}", node)});
+    all.push_back({identifier(node) + "_C", FmuCausality::output, FmuType::real, 0.0, fmt::format("temperature of {}", node)});
   }
-  all.push_back({"winding_peak_C", "degC", FmuCausality::output, FmuType::real, 0.0,
+  all.push_back({"winding_peak_C", FmuCausality::output, FmuType::real, 0.0,
                  "highest winding temperature since the start, also inside a step"});
-  all.push_back({"over_limit", "", FmuCausality::output, FmuType::boolean, 0.0, "whether winding or stator is above its limit"});
-  all.push_back({"limit_crossing_s", "s", FmuCausality::output, FmuType::real, 0.0,
+  all.push_back({"over_limit", FmuCausality::output, FmuType::boolean, 0.0, "whether winding or stator is above its limit"});
+  all.push_back({"limit_crossing_s", FmuCausality::output, FmuType::real, 0.0,
                  fmt::format("when over_limit last changed, located within the step; {:.0f} s before the first time", kNoCrossing_s),
                  true});
   all.push_back(
-      {"winding_limit_C", "degC", FmuCausality::constant, FmuType::real, derating.rules.limits.winding_C, "limit of the winding"});
+      {"winding_limit_C", FmuCausality::constant, FmuType::real, derating.rules.limits.winding_C, "limit of the winding"});
   if (derating.rules.limits.stator_C) {
     all.push_back(
-        {"stator_limit_C", "degC", FmuCausality::constant, FmuType::real, *derating.rules.limits.stator_C, "limit of the stator"});
+        {"stator_limit_C", FmuCausality::constant, FmuType::real, *derating.rules.limits.stator_C, "limit of the stator"});
   }
   return all;
 }

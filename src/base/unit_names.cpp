@@ -1,0 +1,83 @@
+#include "base/unit_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace heatsoak::base {
+namespace {
+
+/// Multiplies `product` by the unit to the power of `sign`.
+void multiply(SiUnit& product, const SiUnit& unit, int sign) {
+  product.kg += sign * unit.kg;
+  product.m += sign * unit.m;
+  product.s += sign * unit.s;
+  product.A += sign * unit.A;
+  product.K += sign * unit.K;
+  product.rad += sign * unit.rad;
+  product.factor *= std::pow(unit.factor, sign);
+}
+
+/// Words of a name that are one product of units.
+struct Product {
+  std::string unit;
+  SiUnit si;
+
+  void put_before(const UnitWord& word) {
+    unit = unit.empty() ? std::string(word.unit) : fmt::format("{} {}", word.unit, unit);
+    multiply(si, word.si, 1);
+  }
+};
+
+std::string quotient(const std::string& above, const std::string& below) {
+  if (below.empty()) {
+    return above;
+  }
+  const bool is_product = below.find(' ') != std::string::npos;
+  return fmt::format("{}/{}{}{}", above.empty() ? "1" : above, is_product ? "(" : "", below, is_product ? ")" : "");
+}
+
+}  // namespace
+
+std::optional<UnitOfName> unit_of_name(std::string_view name) {
+  if (const auto* const all = std::ranges::find(kUnitWords, name, &UnitWord::word); all != kUnitWords.end() && all->unit.empty()) {
+    return UnitOfName{};
+  }
+  std::string_view rest = name;
+  Product current;  // words behind the last "per" that was read
+  std::string below;
+  double offset_K = 0.0;
+  UnitOfName result;
+  for (std::size_t mark = rest.rfind('_'); mark != std::string_view::npos; mark = rest.rfind('_')) {
+    const std::string_view last = rest.substr(mark + 1);
+    if (last == "per" && !current.unit.empty()) {
+      const Product divisor = std::exchange(current, {});
+      below = below.empty() ? divisor.unit : fmt::format("{} {}", divisor.unit, below);
+      multiply(result.si, divisor.si, -1);
+      offset_K = 0.0;
+    } else {
+      const auto* const word = std::ranges::find(kUnitWords, last, &UnitWord::word);
+      if (word == kUnitWords.end() || (word->unit.empty() && rest.size() < name.size())) {
+        break;
+      }
+      if (word->unit.empty()) {
+        return UnitOfName{rest.substr(0, mark), "", {}};
+      }
+      current.put_before(*word);
+      offset_K = rest.size() == name.size() ? word->si.offset_K : 0.0;
+    }
+    rest.remove_suffix(rest.size() - mark);
+  }
+  if (rest.empty() || rest.size() == name.size()) {
+    return std::nullopt;
+  }
+  multiply(result.si, current.si, 1);
+  result.si.offset_K = offset_K;
+  result.quantity = rest;
+  result.unit = quotient(current.unit, below);
+  return result;
+}
+
+}  // namespace heatsoak::base
