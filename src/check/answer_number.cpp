@@ -5,29 +5,24 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <limits>
+#include <optional>
 
 #include "base/diagnostic.h"
+#include "base/unit_names.h"
 
 namespace heatsoak::check {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Last words of a name that are units, and their UDUNITS texts.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 20> kUnits{
-    {{"A", "A"},   {"A2", "A^2"}, {"C", "degC"}, {"Hz", "Hz"},   {"J", "J"}, {"K", "K"},   {"N", "N"},
-     {"Nm", "N m"}, {"V", "V"},    {"W", "W"},    {"byte", "byte"}, {"g", "g"}, {"kg", "kg"}, {"m", "m"},
-     {"m2", "m^2"}, {"mm", "mm"},  {"ohm", "ohm"}, {"rad", "rad"}, {"s", "s"}, {"s2", "s^2"}}};
+/// Groups with one member for each signal. The members' names are those of signals, whose unit is not that of the numbers inside.
+constexpr std::array<std::string_view, 7> kBySignal{"coverage_90",          "error",          "error_before",  "holdout_error",
+                                                    "holdout_error_before", "left_out_error", "residual_tests"};
 
-/// Keys of one value of a quantity, such as its maximum. The enclosing key names the quantity and its unit.
-constexpr std::array<std::string_view, 18> kValueWords{"after", "before", "ci95", "from", "high", "low", "max", "mean", "most",
-                                                       "nominal", "p05", "p50", "p95", "rms", "rmse", "sd", "to", "value"};
+constexpr std::string_view kInterval = "ci95";
 
-std::string_view unit_of_word(std::string_view word) {
-  const auto found = std::ranges::find(kUnits, word, [](const auto& each) { return each.first; });
-  return found == kUnits.end() ? std::string_view() : found->second;
-}
+constexpr std::array<std::string_view, 3> kNullIsNever{"rest_all_s", "rest_half_s", "time_to_limit_s"};
 
 struct Child {
   std::string name;
@@ -62,15 +57,21 @@ std::vector<Child> children_of(const Json& group) {
   return all;
 }
 
-/// Returns at most twelve of the names, separated by commas.
-std::string names_text(const std::vector<Child>& children) {
-  constexpr std::size_t kMost = 12;
+/// Returns each name once.
+std::vector<std::string> names_of(const std::vector<Child>& children) {
   std::vector<std::string> names;
   for (const Child& each : children) {
     if (std::ranges::find(names, each.name) == names.end()) {
       names.push_back(each.name);
     }
   }
+  return names;
+}
+
+/// Returns at most twelve of the names, separated by commas.
+std::string names_text(const std::vector<Child>& children) {
+  constexpr std::size_t kMost = 12;
+  std::vector<std::string> names = names_of(children);
   const bool is_cut = names.size() > kMost;
   names.resize(std::min(names.size(), kMost));
   return fmt::format("{}{}", fmt::join(names, ", "), is_cut ? ", …" : "");
@@ -84,56 +85,62 @@ struct Trail {
   [[nodiscard]] std::string name() const { return fmt::format("{}", fmt::join(keys, ".")); }
 };
 
-/// Last words of keys whose numbers never have a unit, even inside a group with a unit.
-constexpr std::array<std::string_view, 7> kPureNumbers{"count", "nats", "normal", "p", "ratio", "samples", "share"};
-
-/// Returns whether the members of a group with a unit in its name have this unit: "limited_s" with a member for each limit does,
-/// "winding_C" with the members "rmse_K" and "samples" does not.
-bool gives_unit(const Json& members, std::string_view member) {
-  const std::string_view last = member.substr(member.find_last_of('_') + 1);
-  return std::ranges::find(kPureNumbers, last) == kPureNumbers.end() &&
-         std::ranges::all_of(members.items(), [](const auto& each) { return unit_of_name(each.key()).empty(); });
+/// Returns the unit that an object gives for its member `key`: "driver_unit" beside "driver", else "unit".
+std::optional<std::string> unit_beside(const Json& group, const std::string& key) {
+  for (const std::string& name : {key + "_unit", std::string("unit")}) {
+    if (const auto beside = group.find(name); beside != group.end() && beside->is_string()) {
+      return beside->get<std::string>();
+    }
+  }
+  return std::nullopt;
 }
 
+/// Returns the place of the signal's name among the keys below a group of kBySignal: the first one that ends in a unit.
+std::optional<std::size_t> place_of_signal(const std::vector<std::string>& keys) {
+  const auto group =
+      std::ranges::find_if(keys, [](const std::string& key) { return std::ranges::find(kBySignal, key) != kBySignal.end(); });
+  const auto signal = std::find_if(group, keys.end(), [](const std::string& key) { return base::unit_of_name(key).has_value(); });
+  return signal == keys.end() ? std::nullopt : std::optional(static_cast<std::size_t>(signal - keys.begin()));
+}
+
+/// Returns the unit of the innermost key that states one: of its name, or beside it. Objects in a list are things of their own, which do
+/// not have the unit of the list.
 std::string unit_at(const Trail& trail) {
-  bool is_element = false;
+  const std::optional<std::size_t> signal = place_of_signal(trail.keys);
   for (std::size_t i = trail.keys.size(); i-- > 0;) {
     const Json& group = *trail.groups[i];
-    const std::string& key = trail.keys[i];
+    if (signal == i || (group.is_array() && group.front().is_object())) {
+      return {};
+    }
     if (group.is_array()) {
-      is_element = !group.front().is_object();
-      if (!is_element) {
-        return {};
-      }
       continue;
     }
-    const bool is_share = i > 0 && trail.keys[i - 1].starts_with("coverage");
-    if (std::string unit = unit_of_name(key); !unit.empty() && !is_share) {
-      return unit;
+    if (const std::optional<base::UnitOfName> own = base::unit_of_name(trail.keys[i])) {
+      return own->unit;
     }
-    if (std::ranges::find(kValueWords, key) == kValueWords.end()) {
-      return i > 0 && i + 1 == trail.keys.size() && trail.groups[i - 1]->is_object() && gives_unit(group, key)
-                 ? unit_of_name(trail.keys[i - 1])
-                 : std::string();
-    }
-    if (const auto beside = group.find("unit"); beside != group.end() && beside->is_string()) {
-      return beside->get<std::string>();
+    if (const std::optional<std::string> beside = unit_beside(group, trail.keys[i])) {
+      return *beside;
     }
   }
   return {};
 }
 
-/// Returns the 95 % interval of the number `key`: "ci95" beside "value", "probability_ci95" beside "probability_over_limit".
+/// Returns the 95 % interval of the number `key`: "ci95" beside "value", "p95_ci95" beside "p95", "probability_ci95" beside
+/// "probability_over_limit".
 std::optional<AnswerInterval> interval_of(const Json& group, std::string_view key) {
-  constexpr std::string_view kEnd = "ci95";
   for (const Child& each : group.is_object() ? children_of(group) : std::vector<Child>()) {
     const std::string_view name = each.name;
-    const bool is_of_key = name == kEnd ? key == "value"
-                                        : name.ends_with(fmt::format("_{}", kEnd)) && key != name &&
-                                              key.starts_with(name.substr(0, name.size() - kEnd.size()));
-    const Json& ends = *each.value;
-    if (is_of_key && ends.is_array() && ends.size() == 2 && ends[0].is_number() && ends[1].is_number()) {
-      return AnswerInterval{ends[0].get<double>(), ends[1].get<double>()};
+    if (name == key || !name.ends_with(kInterval) || !each.value->is_array() || each.value->size() != 2) {
+      continue;
+    }
+    const std::string_view stem = name.substr(0, name.size() - kInterval.size());
+    const bool is_of_key = stem.empty() ? key == "value" : stem.ends_with('_') && fmt::format("{}_", key).starts_with(stem);
+    if (is_of_key) {
+      const auto end = [&](std::size_t i) {
+        const Json& value = (*each.value)[i];
+        return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+      };
+      return AnswerInterval{end(0), end(1)};
     }
   }
   return std::nullopt;
@@ -147,8 +154,11 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
     refuse(value.empty() ? fmt::format("'{}' is empty", name)
                          : fmt::format("'{}' is no number; expected one of its members: {}", name, names_text(children_of(value))));
   }
+  if (value.is_null() && std::ranges::find(kNullIsNever, trail.keys.back()) != kNullIsNever.end()) {
+    return {name, std::numeric_limits<double>::infinity(), unit_at(trail), {}};
+  }
   if (value.is_null()) {
-    refuse(fmt::format("'{}' is null: the answer has no value there", name));
+    refuse(fmt::format("'{}' is null: the answer has no value there; expected a number that it has", name));
   }
   if (!value.is_number()) {
     refuse(fmt::format("'{}' is {}; expected a number", name, value.dump(-1, ' ', false, Json::error_handler_t::replace)));
@@ -168,8 +178,9 @@ class Search {
     const std::vector<Child> children = children_of(value);
     if (trail_.keys.size() >= deepest_) {
       deepest_ = trail_.keys.size();
-      reached_ = fmt::format("{}; expected one of {}", trail_.keys.empty() ? "the answer" : fmt::format("'{}'", trail_.name()),
-                             children.empty() ? "…" : names_text(children));
+      reached_ = trail_.keys.empty() ? "the answer" : fmt::format("'{}'", trail_.name());
+      const std::string advice = base::did_you_mean(rest.substr(0, rest.find('.')), names_of(children));
+      reached_ += advice.empty() ? fmt::format("; expected one of {}", children.empty() ? "…" : names_text(children)) : advice;
       missing_ = rest;
     }
     for (const Child& child : children) {
@@ -177,7 +188,9 @@ class Search {
       for (const std::string_view key : {std::string_view("*"), std::string_view(child.name)}) {
         const bool is_last = rest == key;
         const bool is_first = rest.starts_with(key) && rest.size() > key.size() + 1 && rest[key.size()] == '.';
-        if (!is_last && !is_first) {
+        // An interval belongs to the number beside it.
+        const bool is_interval = key == "*" && child.name.ends_with(kInterval);
+        if ((!is_last && !is_first) || is_interval) {
           continue;
         }
         trail_.keys.push_back(child.name);
@@ -201,33 +214,7 @@ class Search {
 
 }  // namespace
 
-std::string unit_of_name(std::string_view name) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = 0; begin <= name.size();) {
-    const std::size_t end = std::min(name.find('_', begin), name.size());
-    words.push_back(name.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  std::string below;
-  std::string above;
-  // The first word is the quantity, also where it looks like a unit: "a_V".
-  for (std::size_t i = words.size(); i-- > 1;) {
-    if (words[i] == "per" && !above.empty() && below.empty()) {
-      below = std::exchange(above, {});
-      continue;
-    }
-    const std::string_view unit = unit_of_word(words[i]);
-    if (unit.empty()) {
-      break;
-    }
-    above = above.empty() ? std::string(unit) : fmt::format("{} {}", unit, above);
-  }
-  if (below.empty()) {
-    return above;
-  }
-  const bool is_product = below.find(' ') != std::string::npos;
-  return fmt::format("{}/{}{}{}", above.empty() ? "1" : above, is_product ? "(" : "", below, is_product ? ")" : "");
-}
+std::span<const std::string_view> null_is_never() { return kNullIsNever; }
 
 std::vector<AnswerNumber> numbers_at(const Json& answer, std::string_view place) {
   Search search;

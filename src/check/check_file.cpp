@@ -33,7 +33,10 @@ class CheckReader {
       : table_(std::move(table)), written_(written), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
 
   Check read() {
-    check_.name = table_.text("name", input::Need::required).value_or("");
+    check_.name = table_.text("name", input::Need::optional).value_or("");
+    if (!has("name")) {
+      table_.problem("name", "is missing; expected what the check is for, such as name = \"the guard wastes no current\"");
+    }
     check_.at = table_.at("name");
     check_.folder = folder_;
     read_command();
@@ -94,10 +97,11 @@ class CheckReader {
       if (std::error_code error; fs::exists(file, error)) {
         return file;
       }
-      check_.unreadable.emplace(setting, fmt::format("{}: cannot be read: No such file or directory", file.string()));
+      check_.unreadable.emplace(setting, base::Diagnostic{table_.at(key), std::string(key),
+                                                          fmt::format("{}: cannot be read: No such file or directory", file.string())});
     } catch (const base::Failure& failure) {
-      check_.unreadable.emplace(setting, failure.message());
       unknown_.push_back({table_.at(key), std::string(key), failure.message()});
+      check_.unreadable.emplace(setting, unknown_.back());
     }
     return std::nullopt;
   }
@@ -161,7 +165,7 @@ class CheckReader {
       own = robots_motor();
     }
     if (own) {
-      check_.motor = named("motor", [&] { return motor::under(*own, check_.conditions); });
+      check_.motor = named(has("conditions") ? "conditions" : "motor", [&] { return motor::under(*own, check_.conditions); });
     }
     read_others();
   }
@@ -288,22 +292,44 @@ class CheckReader {
         read_number_limits(member.value, name + ".");
         continue;
       }
-      if (member.value.kind != input::Value::Kind::text) {
-        problem(fmt::format("is {}; expected a limit as text, such as \"at most 5 K\"", input::to_string(member.value.kind)));
-        continue;
+      // A list limits both sides.
+      const bool is_list = member.value.kind == input::Value::Kind::array;
+      for (const input::Value& each : is_list ? std::span(member.value.items) : std::span(&member.value, 1)) {
+        Limit limit;
+        const std::string wrong =
+            each.kind == input::Value::Kind::text
+                ? parse_number_limit(name, each.text, limit)
+                : fmt::format("is {}; expected a limit as text, such as \"at most 5 K\"", input::to_string(each.kind));
+        if (!wrong.empty()) {
+          problem(wrong);
+          continue;
+        }
+        limit.at = each.at;
+        check_.limits.push_back(std::move(limit));
       }
-      Limit limit;
-      if (const std::string wrong = parse_number_limit(name, member.value.text, limit); !wrong.empty()) {
-        problem(wrong);
-        continue;
+    }
+  }
+
+  /// Reports thresholds that stand beside [check.limits] instead of below it, and a check without limits.
+  void find_limits() {
+    limits_ = table_.table("limits", input::Need::optional);
+    bool is_beside = false;
+    for (const std::string& key : table_.keys()) {
+      if (find_threshold(key) != nullptr) {
+        table_.pass_over(key);
+        table_.problem(key, "is a threshold; expected it below [check.limits]");
+        is_beside = true;
       }
-      limit.at = member.value.at;
-      check_.limits.push_back(std::move(limit));
+    }
+    if (!has("limits") && !is_beside) {
+      table_.problem("limits",
+                     "is missing; expected [check.limits] with one limit or more below the keys of the check, such as "
+                     "winding_peak_p95 = \"at most 120 degC\"");
     }
   }
 
   void read_limits() {
-    limits_ = table_.table("limits", input::Need::required);
+    find_limits();
     if (!limits_) {
       return;
     }
@@ -334,9 +360,11 @@ class CheckReader {
                                    base::did_you_mean(key, known)));
         continue;
       }
-      if (const input::Value* value = written_.find("limits")->find(key); value->kind == input::Value::Kind::number) {
+      if (const input::Value* value = written_.find("limits")->find(key); value->kind != input::Value::Kind::text) {
         limits_->pass_over(key);
-        limits_->problem(key, bare_limit_problem(value->text, *type));
+        limits_->problem(key, value->kind == input::Value::Kind::number ? bare_limit_problem(value->text, *type)
+                                                                        : fmt::format("is {}; expected a limit as text, such as \"{}\"",
+                                                                                      input::to_string(value->kind), type->example));
         continue;
       }
       const std::optional<std::string> text = limits_->text(key, input::Need::required);
@@ -412,6 +440,9 @@ class CheckReader {
 CheckFile read_check_file(const fs::path& path, const input::DataFolders& folders) {
   const input::Value root = input::read_toml(path);
   base::Diagnostics diagnostics;
+  if (const input::Value* one = root.find("check"); one != nullptr && one->kind == input::Value::Kind::table) {
+    throw base::bad_input(one->at, "check", "is a single table; expected [[check]], in two brackets, for each check");
+  }
   input::Reader top(root, "", diagnostics);
   CheckFile file{path, {}, {}};
   std::vector<input::Reader> tables = top.tables("check");

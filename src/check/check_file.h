@@ -24,10 +24,10 @@ struct NumberType;
 
 struct Limit {
   const ThresholdType* type = nullptr;
-  double value = 0.0;  ///< in the type's unit
-  std::string unit;    ///< unit as written in the file
-  std::string text;    ///< limit as written in the file: "at most 150 degC"
-  base::Location at;   ///< place of that text
+  double value = 0.0;                          ///< in the type's unit
+  std::string unit;                            ///< unit as written in the file
+  std::string text;                            ///< limit as written in the file: "at most 150 degC"
+  base::Location at;                           ///< place of that text
   std::shared_ptr<const NumberType> own = {};  ///< keeps `type` alive if it belongs to this limit alone
 };
 
@@ -51,8 +51,8 @@ struct Check {
   std::filesystem::path folder = {};  ///< folder of the check file
   std::string command = {};           ///< if not empty, the limits are on numbers of this command's JSON answer
   std::vector<Limit> limits;
-  /// Settings whose id or file does not exist, with the reason; the thresholds that need them fail.
-  std::map<Setting, std::string> unreadable;
+  /// Settings whose id or file does not exist, with place and reason; the thresholds that need them fail.
+  std::map<Setting, base::Diagnostic> unreadable;
 };
 
 struct CheckFile {

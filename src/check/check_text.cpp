@@ -57,8 +57,9 @@ std::string suite_begin(std::string_view name, const Counts& counts, std::string
 }
 
 std::string test_case(const Outcome& each) {
-  std::string text = fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", base::xml_attribute(each.limit.type->name),
-                                 base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
+  std::string text =
+      fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", base::xml_attribute(each.limit.type->name),
+                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
   const std::string facts = fmt::format("value {}, limit {}, margin {}\n{}", value_text(each), limit_text(each), margin_text(each),
                                         each.measured ? each.measured->detail : "");
   if (each.passed) {
@@ -124,7 +125,7 @@ std::string conclusion_text(std::span<const Outcome> outcomes) {
 std::string value_text(const Outcome& outcome) { return outcome.measured ? shown(outcome.measured->value, *outcome.limit.type) : "–"; }
 
 std::string margin_text(const Outcome& outcome) {
-  if (!outcome.measured) {
+  if (!outcome.measured || outcome.measured->is_never) {
     return "–";
   }
   const double margin = *outcome.margin_value();

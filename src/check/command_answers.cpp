@@ -42,10 +42,10 @@ CommandWords command_words(std::string_view text) {
   if (all.words.empty() || all.words.front() == "check" || all.words.front().starts_with('-')) {
     all.problem = "expected a command with a JSON answer and its options, such as \"derate --robot R --motor M\", but not check";
   }
-  for (const std::string& word : all.words) {
+  for (const std::string& each : all.words) {
     // Their result is an exit code, which limits on numbers would not see.
     for (const std::string_view gate : {"--check", "--fail-on"}) {
-      if (word == gate || word.starts_with(std::string(gate) + "=")) {
+      if (each == gate || each.starts_with(std::string(gate) + "=")) {
         all.problem =
             fmt::format("{} has no place in a check; expected limits on the numbers of the command's answer, or table = \"FILE\"", gate);
       }

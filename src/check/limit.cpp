@@ -61,7 +61,10 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("\"{}\" limits the wrong side of {}; {}", all, type.name, expected(type))};
   }
   if (!all.starts_with(words) || (all.size() > words.size() && all[words.size()] != ' ')) {
-    return {0.0, {}, fmt::format("\"{}\" is not a limit; {}", all, expected(type))};
+    const bool lacks_words = base::parse_quantity(all, type.unit, type.is_share).ok();
+    return {0.0,
+            {},
+            fmt::format("\"{}\" is not a limit; {}", all, lacks_words ? fmt::format("expected \"{} {}\"", words, all) : expected(type))};
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
   const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit, type.is_share);
@@ -69,6 +72,19 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
     return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
   }
   if (!type.range.contains(parsed.value)) {
+    if (type.unit == "degC" && unit_behind(quantity) == "K") {
+      const std::string number(trimmed(quantity.substr(0, quantity.size() - 1)));
+      return {0.0,
+              {},
+              fmt::format("\"{}\" is an absolute temperature, {:.0f} °C; expected \"{} {} degC\" if that is meant", all, parsed.value,
+                          words, number)};
+    }
+    if (type.is_share) {
+      return {0.0,
+              {},
+              fmt::format("\"{}\" is {} %; expected 0 to 100 %, such as \"{}\"", all, base::significant(100.0 * parsed.value, 6),
+                          type.example)};
+    }
     return {0.0,
             {},
             fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, base::to_string(type.range, type.unit), type.example)};
@@ -118,8 +134,10 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
   if (type.room == Room::none) {
     return text_of(in_unit(measured.value, type.unit, unit));
   }
-  // A value at its origin would get no room, so its distance counts as at least least_size_ratio.
-  const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), type.least_size_ratio);
+  // A value at its origin would get no room, so its distance counts as at least the least size.
+  constexpr double kLeastRise_K = 20.0;
+  const double least_size = type.unit == "degC" ? std::max(kLeastRise_K, type.least_size_ratio) : type.least_size_ratio;
+  const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), least_size);
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
@@ -134,7 +152,7 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
 
 std::string shown(double value, const ThresholdType& type) {
   if (!std::isfinite(value)) {
-    return "–";
+    return value > 0.0 ? "never" : "–";
   }
   if (type.unit.empty() && type.is_share) {
     return base::significant(100.0 * value, 3) + " %";

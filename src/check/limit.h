@@ -36,7 +36,7 @@ std::string_view to_string(Bound direction);
 /// Returns whether `value` keeps the limit; false for NaN.
 bool keeps(Bound direction, double value, double limit_value);
 
-/// Formats a value with its unit for people: "61.2 °C", "4.1 %", "12 kB", "3"; "–" for NaN.
+/// Formats a value with its unit for people: "61.2 °C", "4.1 %", "12 kB", "3"; "never" for an infinite time, "–" for NaN.
 std::string shown(double value, const ThresholdType& type);
 
 }  // namespace heatsoak::check

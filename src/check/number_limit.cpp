@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/copper.h"
@@ -13,6 +18,15 @@
 
 namespace heatsoak::check {
 namespace {
+
+/// Values of this size get a sensible room from --update where the value itself is about zero.
+double least_size(std::string_view unit, bool is_share) {
+  constexpr std::array<std::pair<std::string_view, double>, 6> kSizes{
+      {{"K", 20.0}, {"A", 0.2}, {"V", 0.2}, {"W", 0.2}, {"s", 0.2}, {"m", 0.02}}};
+  const auto* const found = std::ranges::find(kSizes, unit, &std::pair<std::string_view, double>::first);
+  constexpr double kShare = 0.01;
+  return found != kSizes.end() ? found->second : is_share ? kShare : 0.0;
+}
 
 /// A percentage is a pure number that is shown in percent.
 void set_type(Limit& limit, std::string name, std::string unit, Bound direction, bool is_share) {
@@ -25,6 +39,7 @@ void set_type(Limit& limit, std::string name, std::string unit, Bound direction,
   own->type.is_share = is_share;
   own->type.direction = direction;
   own->type.example = own->example;
+  own->type.least_size_ratio = least_size(own->unit, is_share);
   if (own->unit == "degC") {
     own->type.range = thresholds::kPlausible_C;  // 70 K of a rise would be -203 degC
   }
@@ -32,14 +47,51 @@ void set_type(Limit& limit, std::string name, std::string unit, Bound direction,
   limit.own = own;
 }
 
+/// Returns the end of the interval that is nearer to violating the limit; infinite if the answer has no such end.
 double worse_end(const AnswerNumber& number, Bound direction) {
-  return !number.interval ? number.value : direction == Bound::at_most ? number.interval->high : number.interval->low;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return !number.interval              ? number.value
+         : direction == Bound::at_most ? number.interval->high.value_or(kNone)
+                                       : number.interval->low.value_or(-kNone);
+}
+
+/// Returns the interval of a number as text, or what is compared instead.
+std::string interval_text(const AnswerNumber& number, const ThresholdType& type) {
+  if (number.interval) {
+    const auto end = [&](const std::optional<double>& value) { return value ? shown(*value, type) : "unknown"; };
+    return fmt::format("{}, its 95 % interval {} to {}", shown(number.value, type), end(number.interval->low), end(number.interval->high));
+  }
+  const std::string_view name = number.name;
+  const std::string_view key = name.substr(name.rfind('.') + 1);
+  const bool is_percentile = key.size() == 3 && key[0] == 'p' && std::isdigit(static_cast<unsigned char>(key[1])) != 0;
+  if (is_percentile || key.find("probability") != std::string_view::npos) {
+    return fmt::format("the {} itself is compared: the answer has no interval for it", is_percentile ? "percentile" : "probability");
+  }
+  return key == "nominal" ? "the nominal value is compared" : "";
+}
+
+/// Does the same as numbers_at(); if there is none, but a threshold of that name, the reason says so.
+std::vector<AnswerNumber> numbers_named(std::string_view name, const nlohmann::ordered_json& answer) {
+  try {
+    return numbers_at(answer, name);
+  } catch (const base::Failure& failure) {
+    if (find_threshold(name) == nullptr) {
+      throw;
+    }
+    throw base::Failure(failure.code(), fmt::format("'{}' is a threshold, not a number of a command's answer; expected a check with robot, "
+                                                    "duty or motor in place of the command (`heatsoak describe {}`)",
+                                                    name, name));
+  }
 }
 
 }  // namespace
 
 std::string parse_number_limit(std::string_view name, std::string_view text, Limit& limit) {
-  const bool is_at_least = text.substr(std::min(text.find_first_not_of(" \t"), text.size())).starts_with(to_string(Bound::at_least));
+  const std::string_view words = text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+  const bool is_at_least = words.starts_with(to_string(Bound::at_least));
+  if (!is_at_least && !words.starts_with(to_string(Bound::at_most))) {
+    return fmt::format("\"{}\" is not a limit; expected at most or at least and a number with its unit, such as \"at most 5 K\"", text);
+  }
   const std::string unit = unit_of_limit(text);
   const bool is_share = unit == "%";
   set_type(limit, std::string(name), is_share ? "" : unit, is_at_least ? Bound::at_least : Bound::at_most, is_share);
@@ -52,7 +104,7 @@ std::string parse_number_limit(std::string_view name, std::string_view text, Lim
 
 Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   const Bound direction = limit.type->direction;
-  const std::vector<AnswerNumber> numbers = numbers_at(answer, limit.type->name);
+  const std::vector<AnswerNumber> numbers = numbers_named(limit.type->name, answer);
   const auto is_worse = [direction](const AnswerNumber& one, const AnswerNumber& other) {
     return direction == Bound::at_most ? worse_end(one, direction) > worse_end(other, direction)
                                        : worse_end(one, direction) < worse_end(other, direction);
@@ -60,8 +112,8 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   const AnswerNumber& worst = *std::ranges::min_element(numbers, is_worse);
   for (const AnswerNumber& each : numbers) {
     if (each.unit != worst.unit) {
-      throw base::Failure(base::ExitCode::cannot_answer, fmt::format("'{}' and '{}' have different units; expected a limit for each",
-                                                                     worst.name, each.name));
+      throw base::Failure(base::ExitCode::cannot_answer,
+                          fmt::format("'{}' and '{}' have different units; expected a limit for each", worst.name, each.name));
     }
   }
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share);
@@ -70,13 +122,19 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
     throw base::Failure(base::ExitCode::bad_input, parsed.problem);
   }
   limit.value = parsed.value;
-  std::string detail = numbers.size() > 1 ? fmt::format("{}, of {} numbers", worst.name, numbers.size()) : std::string();
-  if (worst.interval) {
-    detail += fmt::format("{}{}, its 95 % interval {} to {}", detail.empty() ? "" : "; ", shown(worst.value, *limit.type),
-                          shown(worst.interval->low, *limit.type), shown(worst.interval->high, *limit.type));
+  const double value = worse_end(worst, direction);
+  if (worst.interval && !std::isfinite(value)) {
+    throw base::Failure(
+        base::ExitCode::cannot_answer,
+        fmt::format("the 95 % interval of '{}' has no {} end, because the answer rests on too few samples; expected more of "
+                    "them (--samples of the command)",
+                    worst.name, direction == Bound::at_most ? "upper" : "lower"));
   }
+  const std::string compared = interval_text(worst, *limit.type);
+  std::string detail = numbers.size() > 1 ? fmt::format("{}, of {} numbers", worst.name, numbers.size()) : std::string();
+  detail += compared.empty() || detail.empty() ? compared : "; " + compared;
   const double origin_value = worst.unit == "degC" ? base::kSheetTemperature_C : 0.0;
-  return {worse_end(worst, direction), origin_value, detail};
+  return {.value = value, .origin_value = origin_value, .detail = detail, .is_never = std::isinf(worst.value)};
 }
 
 }  // namespace heatsoak::check

@@ -39,6 +39,10 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
       continue;
     }
     Limit& limit = outcome.limit;
+    if (outcome.measured->is_never) {
+      outcome.reason += outcome.passed ? "" : "; the limit is not rewritten: no time is long enough";
+      continue;
+    }
     const std::string text = updated_limit(*outcome.measured, *limit.type, limit.unit, margin_share);
     const ParsedLimit parsed = parse_limit(text, *limit.type);
     const std::string problem =

@@ -36,7 +36,7 @@ std::string reason_of(const base::Failure& failure) {
 void require_readable(const Check& check, const ThresholdType& type) {
   for (const auto& [setting, reason] : check.unreadable) {
     if (std::ranges::find(type.needs, setting) != type.needs.end() || std::ranges::find(type.takes, setting) != type.takes.end()) {
-      throw base::Failure(base::ExitCode::bad_input, reason);
+      throw base::Failure(base::ExitCode::bad_input, "", {reason});
     }
   }
 }
@@ -63,7 +63,7 @@ Measured measure(const Check& check, Limit& limit, Computations& computations, c
 void evaluate_one(Outcome& outcome, Computations& computations, const CommandAnswers& answers) {
   try {
     Measured measured = measure(*outcome.check, outcome.limit, computations, answers);
-    if (std::isfinite(measured.value)) {
+    if (std::isfinite(measured.value) || measured.is_never) {
       outcome.measured = std::move(measured);
     } else {
       outcome.reason = "the result is not a number";
@@ -142,6 +142,10 @@ void judge(Outcome& outcome) {
   }
   const ThresholdType& type = *outcome.limit.type;
   outcome.passed = keeps(type.direction, outcome.measured->value, outcome.limit.value);
+  if (outcome.measured->is_never && !outcome.passed) {
+    outcome.reason = fmt::format("it never happens; expected it within {}", shown(outcome.limit.value, type));
+    return;
+  }
   outcome.reason = outcome.passed ? std::string()
                                   : fmt::format("{} is {} the limit of {}", shown(outcome.measured->value, type),
                                                 type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));

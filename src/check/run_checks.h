@@ -26,8 +26,8 @@ struct Outcome {
 };
 
 /// Returns one outcome per limit, in the order of the file. Thresholds that cannot be evaluated fail with a reason; all others are still
-/// evaluated. The results do not depend on `threads`; 0 means all cores. `progress` reports the phases that check_phases() returns. `answers`
-/// are those of the file's commands.
+/// evaluated. The results do not depend on `threads`; 0 means all cores. `progress` reports the phases that check_phases() returns.
+/// `answers` are those of the file's commands.
 std::vector<Outcome> run_checks(const CheckFile& file, int threads, const CommandAnswers& answers, const base::JobProgress& progress = {});
 
 /// Returns the phases of run_checks().

@@ -23,7 +23,23 @@ enum class Room {
 };
 
 /// Keys of a [[check]] table other than its name and limits.
-enum class Setting { robot, duty, motor, against, conditions, samples, seed, temperature, table, files, logs, mapping, air, derate, command };
+enum class Setting {
+  robot,
+  duty,
+  motor,
+  against,
+  conditions,
+  samples,
+  seed,
+  temperature,
+  table,
+  files,
+  logs,
+  mapping,
+  air,
+  derate,
+  command
+};
 struct SettingText {
   std::string_view key;
   std::string_view meaning;
@@ -35,6 +51,7 @@ struct Measured {
   double value = 0.0;         ///< in the unit of the threshold
   double origin_value = 0.0;  ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
   std::string detail = {};    ///< basis of the value, one line for people; may be empty
+  bool is_never = false;      ///< the event never happens, so that its time, the value, is infinite
 };
 
 /// The loosest limit that a check may set, such as the motor's own winding limit.

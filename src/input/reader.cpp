@@ -59,7 +59,9 @@ const Value* Reader::get(std::string_view key, Value::Kind kind, Need need) {
   }
   if (value->kind != kind) {
     const bool bare_number = kind == Value::Kind::text && value->kind == Value::Kind::number;
-    problem(key, bare_number && is_no_quantity(value->text)
+    const bool lacks_brackets = kind == Value::Kind::array && value->kind == Value::Kind::text;
+    problem(key, lacks_brackets ? fmt::format("is a text, expected a list: [\"{}\"]", value->text)
+                 : bare_number && is_no_quantity(value->text)
                      ? fmt::format("{} is no quantity; expected a number with its unit, as text", value->text)
                  : bare_number ? fmt::format("{} is a bare number; expected text, in quotes: \"{}\"", value->text, value->text)
                                : fmt::format("is {}, expected {}", to_string(value->kind), to_string(kind)));
@@ -296,10 +298,15 @@ void Reader::read_spread(const base::ParameterSpec& spec, base::ParameterValue& 
 }
 
 void Reader::finish() {
+  constexpr std::size_t kMostListed = 20;
   const std::vector<std::string> known(asked_.begin(), asked_.end());
   for (const auto& [key, value] : table_->members) {
     if (!asked_.contains(key)) {
-      diagnostics_->add(value.at, full(key), fmt::format("is not a key of this table{}", base::did_you_mean(key, known)));
+      std::string advice = base::did_you_mean(key, known);
+      if (advice.empty() && known.size() <= kMostListed) {
+        advice = fmt::format("; expected one of {}", fmt::join(known, ", "));
+      }
+      diagnostics_->add(value.at, full(key), fmt::format("is not a key of this table{}", advice));
     }
   }
 }

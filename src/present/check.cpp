@@ -44,6 +44,10 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
       before = each.check;
     }
     std::string why = check::explanation(each);
+    if (!each.passed) {
+      const base::Location& at = each.limit.at;
+      why = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, why);
+    }
     if (!each.before.empty()) {
       why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
     }

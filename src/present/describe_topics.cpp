@@ -62,9 +62,12 @@ Document command_limits_description() {
           "The name of a number is the list of keys to it, joined by \".\"; `heatsoak COMMAND … --json -` shows them. An element "
           "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
           "counts.",
-          "The unit is that in which the name ends, or of the \"unit\" beside the number. Of a number with a 95 % interval "
-          "beside it, the worse end is compared. A number that is missing or null fails its limit. The command runs in the "
-          "folder of the check file and writes no file."}};
+          "The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number with a 95 % "
+          "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit, "
+          "except "
+          "that the null of a time means never: time_to_limit_s, rest_half_s, rest_all_s. The command runs in the folder of the check file "
+          "and "
+          "writes no file."}};
   document.listings.push_back({"in a check file:",
                                "[[check]]\n"
                                "name = \"purpose of this check\"\n"

@@ -306,6 +306,20 @@ std::string sparkline(const select::MotorEvaluation& motor, double ambient_C) {
 
 namespace {
 
+/// States the rest of a hot motor.
+std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id) {
+  std::string text;
+  for (const select::RestOfHotMotor& each : rests) {
+    const std::string rest =
+        each.all_s ? duration_text(*each.all_s) : fmt::format("never from {} of {} places in the duty", each.starts_never, each.starts);
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", duration_text(each.play_s), rest);
+  }
+  return fmt::format(
+      "Rest of a hot {} until it can play on within its limits, by time of play: {}. Hot: at its limit, in steady state; "
+      "all values are nominal.",
+      motor_id, text);
+}
+
 /// Returns the ranking by samples with its notes.
 Document ranking_document(const simulate::EvaluationAnswer& answer) {
   const std::vector<select::MotorEvaluation>& results = answer.results;
@@ -325,6 +339,11 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
         "slip add heat there; grip, voltage and current limits take heat away. --closed-loop ranks motors with all that.");
   }
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
+  for (const auto& [id, rests] : answer.rests) {
+    if (id == results.front().motor_id || id == answer.robot.drive.motor) {
+      document.add_note(Severity::background, rest_words(rests, id));
+    }
+  }
   if (answer.draw_count == 0 && results.front().samples > 0) {
     document.add_note(Severity::background, sampling_error(results));
   }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -9,27 +11,43 @@
 namespace heatsoak::present {
 namespace {
 
-Json json(const select::Spread95& peak) {
-  return {
-      {"nominal", rounded(peak.nominal, 2)}, {"p05", rounded(peak.p05, 2)}, {"p50", rounded(peak.p50, 2)}, {"p95", rounded(peak.p95, 2)}};
+Json json(const std::optional<select::Interval95>& interval, int decimals) {
+  return interval ? Json{rounded(interval->low, decimals), rounded(interval->high, decimals)} : Json();
+}
+
+Json json(const select::Spread95& peak, const std::optional<select::Interval95>& of_p95) {
+  return {{"nominal", rounded(peak.nominal, 2)},
+          {"p05", rounded(peak.p05, 2)},
+          {"p50", rounded(peak.p50, 2)},
+          {"p95", rounded(peak.p95, 2)},
+          {"p95_ci95", json(of_p95, 2)}};
+}
+
+Json json(const std::vector<select::RestOfHotMotor>& rests) {
+  Json all = Json::array();
+  for (const select::RestOfHotMotor& each : rests) {
+    all.push_back({{"play", fmt::format("{:.0f}min", each.play_s / 60.0)},
+                   {"rest_half_s", rounded(each.half_s, 0)},
+                   {"rest_all_s", rounded(each.all_s, 0)},
+                   {"starts", each.starts},
+                   {"starts_never", each.starts_never}});
+  }
+  return all;
 }
 
 Json json(const select::MotorEvaluation& each) {
   const auto number = [](const std::optional<int>& value) { return value ? Json(*value) : Json(); };
   const select::DecidingSamples deciding = select::deciding_samples(each);
-  const auto interval = [](const std::optional<select::Interval95>& value, int decimals) {
-    return value ? Json{rounded(value->low, decimals), rounded(value->high, decimals)} : Json();
-  };
   return {{"id", each.motor_id},
           {"winding_limit_C", rounded(each.winding_limit_C, 2)},
-          {"winding_peak_C", json(each.winding_peak_C)},
-          {"stator_peak_C", json(each.stator_peak_C)},
+          {"winding_peak_C", json(each.winding_peak_C, each.winding_p95_interval_C)},
+          {"stator_peak_C", json(each.stator_peak_C, each.stator_p95_interval_C)},
           {"samples", each.samples},
           {"samples_needed", number(each.samples_needed)},
           {"deciding_samples", {{"p50", number(deciding.half)}, {"p90", number(deciding.nine_in_ten)}}},
           {"probability_over_limit", rounded(each.probability_over_limit, 4)},
-          {"probability_ci95", interval(each.probability_interval, 4)},
-          {"winding_p95_ci95_C", interval(each.winding_p95_interval_C, 2)},
+          {"probability_ci95", json(each.probability_interval, 4)},
+          {"winding_p95_ci95_C", json(each.winding_p95_interval_C, 2)},
           {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
           {"current_rms_A", rounded(each.current_rms_A, 4)},
           {"verdict", select::to_string(each.verdict)},
@@ -75,7 +93,10 @@ Json evaluation_json(const simulate::EvaluationAnswer& answer) {
   result["is_friction_assumed"] = answer.robot.friction.is_assumed;
   result["motors"] = Json::array();
   for (std::size_t i = 0; i < answer.results.size(); ++i) {
+    const auto rests = answer.rests.find(answer.results[i].motor_id);
     result["motors"].push_back(json(answer.results[i]));
+    result["motors"].back()["rest_of_hot_motor"] =
+        json(rests == answer.rests.end() ? std::vector<select::RestOfHotMotor>() : rests->second);
     if (answer.closed_loop) {
       result["motors"].back()["closed_loop"] = closed_loop_json(answer.ranks[i], answer.seed);
     }

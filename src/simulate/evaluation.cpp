@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/diagnostic.h"
+#include "base/parallel.h"
 #include "duty/match/match_duty.h"
 #include "robot/assumed_friction.h"
 #include "select/decision.h"
@@ -62,6 +63,27 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
                                                                        progress.begin(kChanging))};
 }
 
+/// Returns the rests of every motor that can drive the duty, on the wheel that its result is for.
+std::map<std::string, std::vector<select::RestOfHotMotor>> rests_of(const EvaluationAnswer& answer,
+                                                                    std::span<const duty::WheelDemand> wheels, int threads) {
+  std::vector<std::vector<select::RestOfHotMotor>> rests(answer.results.size());
+  base::in_parallel(rests.size(), threads, [&](std::size_t i) {
+    const select::MotorEvaluation& result = answer.results[i];
+    if (result.verdict != select::Verdict::infeasible) {
+      const duty::WheelDemand& wheel = *std::ranges::find(wheels, result.wheel, &duty::WheelDemand::wheel);
+      const motor::Motor& motor = *std::ranges::find(answer.motors, result.motor_id, &motor::Motor::id);
+      rests[i] = select::rests_of_hot_motor(answer.robot, answer.duty, wheel, motor);
+    }
+  });
+  std::map<std::string, std::vector<select::RestOfHotMotor>> by_id;
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    if (!rests[i].empty()) {
+      by_id.emplace(answer.results[i].motor_id, std::move(rests[i]));
+    }
+  }
+  return by_id;
+}
+
 }  // namespace
 
 select::Verdict EvaluationAnswer::worst_verdict() const {
@@ -84,6 +106,7 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
                           .samples = job.samples.value_or(select::first_samples(job.duty.shape_data->has_unknowns())),
                           .demand = {},
                           .results = {},
+                          .rests = {},
                           .closed_loop = job.closed_loop,
                           .ranks = {},
                           .changes = {}};
@@ -113,6 +136,7 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
   if (job.closed_loop) {
     answer.ranks = rank_closed_loop(drive_games(answer.robot, match->inputs(), job.motors, drive, progress), answer.results);
   }
+  answer.rests = rests_of(answer, wheels, job.threads);
   answer.changes = changes_for(job, answer, progress);
   return answer;
 }

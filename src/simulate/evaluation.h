@@ -11,6 +11,7 @@
 #include "base/job_progress.h"
 #include "select/changes.h"
 #include "select/evaluate.h"
+#include "select/rest.h"
 #include "simulate/closed_loop_rank.h"
 
 namespace heatsoak::simulate {
@@ -53,6 +54,8 @@ struct EvaluationAnswer {
   duty::WheelDemand demand;                      ///< nominal demand of one of the wheels
   std::size_t draw_count = 0;                    ///< number of simulated games; 0 for a duty without random samples
   std::vector<select::MotorEvaluation> results;  ///< with nominal curves; sorted like `ranks` in closed loop, else by evaluate()
+  /// Rests of hot motors by id, without motors that cannot drive the duty or whose limits no current reaches.
+  std::map<std::string, std::vector<select::RestOfHotMotor>> rests;
   std::optional<ClosedLoopJob> closed_loop;
   std::vector<ClosedLoopRank> ranks;  ///< one for each result; empty without a closed loop
   /// Changes for the robot's own motor if it is among the results, else for the best motor. Empty if that motor passes and no changes were

@@ -94,19 +94,34 @@ TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
                                       "guard_missing_charge = \"at most 1e30 A s\"\n"  // 15
                                       "winding_peak_p95_ = \"at most 1\"\n");
   const int first = 1 + static_cast<int>(std::ranges::count(kHead, '\n'));
-  const std::vector<std::string> expected{"winding_peak_p95: \"at most 70 K\" is out of range; expected -60",
-                                          "stator_peak_p95: \"at most -400 degC\" is out",
-                                          "rank: \"at most 1.5\" is not a whole number",
-                                          "current_margin: \"at least 1e30 A\" is out of range",
-                                          "lint_problems: \"at most 0.5\" is not a whole number",
-                                          "time_above: \"at most 1e30 s\" is out",
-                                          "derating_excess: \"at most 1e30 A\" is out",
-                                          "core_size: \"at most 1e30 byte\" is out",
-                                          "guard_missing_charge: \"at most 1e30 A s\" is out"};
+  const std::vector<std::string> expected{
+      "winding_peak_p95: \"at most 70 K\" is an absolute temperature, -203 °C; expected \"at most 70 degC\"",
+      "stator_peak_p95: \"at most -400 degC\" is out",
+      "rank: \"at most 1.5\" is not a whole number",
+      "current_margin: \"at least 1e30 A\" is out of range",
+      "lint_problems: \"at most 0.5\" is not a whole number",
+      "time_above: \"at most 1e30 s\" is out",
+      "derating_excess: \"at most 1e30 A\" is out",
+      "core_size: \"at most 1e30 byte\" is out",
+      "guard_missing_charge: \"at most 1e30 A s\" is out"};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_THAT(said, testing::ContainsRegex(fmt::format("a.check.toml:{}:[0-9]+: error: ", first + 1 + static_cast<int>(i))));
     EXPECT_THAT(said, HasSubstr(expected[i]));
   }
+}
+
+TEST_F(CheckFiles, MistakesOfFormSayWhatIsExpected) {
+  EXPECT_THAT(message_of(kHead + "winding_peak_p95 = \"at most 70 degC\"\n"),
+              HasSubstr("is a threshold; expected it below [check.limits]"));
+  EXPECT_THAT(message_of(kHead), HasSubstr("check[0].limits: is missing; expected [check.limits] with one limit or more"));
+  EXPECT_THAT(message_of("[check]\nname = \"x\"\n"), HasSubstr("is a single table; expected [[check]], in two brackets"));
+  EXPECT_THAT(message_of(kHead + "[check.limits]\nrank = { most = 1 }\n"),
+              HasSubstr("is a table; expected a limit as text, such as \"at most"));
+  EXPECT_THAT(message_of("[[check]]\nfiles = \"a.toml\"\n[check.limits]\nlint_problems = \"at most 0\"\n"),
+              testing::AllOf(HasSubstr("check[0].name: is missing; expected what the check is for"),
+                             HasSubstr("is a text, expected a list: [\"a.toml\"]")));
+  EXPECT_THAT(message_of(kHead + "zzz = \"1\"\n[check.limits]\nrank = \"at most 1\"\n"),
+              HasSubstr("zzz: is not a key of this table; expected one of against, air"));
 }
 
 // A percentile estimate is below the true value in half of all files. Its 97.5 % bound is below it in 2.5 % of them.
@@ -420,6 +435,7 @@ TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
     EXPECT_FALSE(each[0].measured);
     EXPECT_FALSE(each[0].passed);
     EXPECT_THAT(each[0].reason, testing::EndsWith("gone.toml: cannot be read: No such file or directory"));
+    EXPECT_THAT(each[0].reason, testing::ContainsRegex("a.check.toml:[0-9]:[0-9]+: ")) << "place of the name";
     EXPECT_TRUE(each[1].passed);
   }
   const std::vector<std::vector<Outcome>> unknown{found(robot + duty + "motor = \"maxon_ecx_flat_42m_24w\"\n", peak),

@@ -26,7 +26,9 @@ TEST(Limit, IsReadInTheUnitOfItsThreshold) {
 
 TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   const auto problem = [](std::string_view text, std::string_view name) { return parse_limit(text, threshold(name)).problem; };
-  EXPECT_THAT(problem("150 degC", "winding_peak_p95"), HasSubstr("expected at most and a value"));
+  EXPECT_THAT(problem("150 degC", "winding_peak_p95"), HasSubstr("expected \"at most 150 degC\""));
+  EXPECT_THAT(problem("below 150 degC", "winding_peak_p95"), HasSubstr("expected at most and a value"));
+  EXPECT_THAT(problem("at most 70 K", "winding_peak_p95"), HasSubstr("-203 °C; expected \"at most 70 degC\""));
   EXPECT_THAT(problem("at mostly 150 degC", "winding_peak_p95"), HasSubstr("is not a limit"));
   EXPECT_THAT(problem("at most", "winding_peak_p95"), HasSubstr("does not begin with a number"));
   EXPECT_THAT(problem("at least 150 degC", "winding_peak_p95"), HasSubstr("the wrong side"));
@@ -35,7 +37,8 @@ TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   EXPECT_THAT(problem("at most nan degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most inf degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most 1e999 degC", "winding_peak_p95"), HasSubstr("too large"));
-  EXPECT_THAT(problem("at most 150 %", "probability_over_limit"), HasSubstr("out of range"));
+  EXPECT_THAT(problem("at most 150 %", "probability_over_limit"), HasSubstr("\"at most 150 %\" is 150 %; expected 0 to 100 %"));
+  EXPECT_THAT(problem("at most 5", "probability_over_limit"), HasSubstr("\"at most 5\" is 500 %; expected 0 to 100 %, such as \"at most"));
   EXPECT_THAT(problem("", "rank"), HasSubstr("is not a limit"));
 }
 
@@ -52,6 +55,9 @@ TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
   // Air of 25 °C and a rise of 100 K: the new limit has a margin of 5 K.
   EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degC", 0.05), "at most 130 degC");
   EXPECT_EQ(updated_limit({125.0, 25.0}, threshold("winding_peak_p95"), "degF", 0.05), "at most 266 degF");
+  // Without a rise the margin is that of 20 K.
+  EXPECT_EQ(updated_limit({25.0, 25.0}, threshold("winding_peak_p95"), "degC", 0.05), "at most 26 degC");
+  EXPECT_EQ(updated_limit({10.0, 25.0}, threshold("stator_peak_p95"), "degC", 0.05), "at most 11 degC");
   EXPECT_EQ(updated_limit({4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least 3.6 A");
   EXPECT_EQ(updated_limit({-4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least -4.4 A");
   EXPECT_EQ(updated_limit({3.0, 0.0}, threshold("rank"), "", 0.05), "at most 3");

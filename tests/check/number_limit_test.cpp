@@ -19,19 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 const Json kAnswer = Json::parse(R"({
-  "schema": "heatsoak.simulate/1", "verdict": "pass", "runaway": false, "time_to_limit_s": null, "none": [],
-  "planners": [{"planner": "fast", "distance_m": 900.5, "peaks_C": {"p05": 40.0, "p95": 61.5}},
-               {"planner": "slow.2", "distance_m": 700.0, "peaks_C": {"p05": 30.0, "p95": 51.5}}],
+  "schema": "heatsoak.simulate/1", "verdict": "pass", "cold_C": 10.6, "room_C": 25.0, "idle_s": 0.0, "runaway": false, "time_to_limit_s": null, "margin_A": null, "none": [],
+  "planners": [{"planner": "fast", "distance_m": 900.5, "peaks_C": {"p05": 40.0, "p95": 61.5, "p95_ci95": [58.0, 66.0]}},
+               {"planner": "slow.2", "distance_m": 700.0, "peaks_C": {"p05": 30.0, "p95": 51.5, "p95_ci95": [48.0, null]}}],
   "probability_over_limit": 0.02, "probability_ci95": [0.005, 0.06], "over_share_ci95": [0.0, 0.01], "over": 2,
   "parameters": [{"name": "joint.conductance", "value": 0.25, "unit": "W/K", "ci95": [0.2, 0.31], "nats": 4.5}],
   "wheels": [{"index": 1, "damping_V_s_per_rad": {"value": 0.02, "ci95": [0.01, 0.03]}}],
   "coverage_90": {"winding_C": 0.93}, "error": {"winding_C": {"rmse_K": 2.5, "samples": 400}},
   "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
-  "tests": {"winding_C": {"variance_ratio": 1.1, "ljung_box_p": 0.4}}, "knots": [1.0, 2.0]})");
+  "residual_tests": {"before": {"winding_C": {"periodogram_over_band": 1.1, "ljung_box_p": 0.4, "correlated_with": {"current": 0.1}}}},
+  "power_balance_W": {"copper_loss": {"winding": 5.0}}, "curve": {"driver": [1.0], "driver_unit": "rad/s", "value": [2.0], "unit": "W"},
+  "knots": [1.0, 2.0]})");
 
 std::string refusal(std::string_view place) {
   try {
@@ -59,11 +62,11 @@ TEST(AnswerNumbers, AreFoundByKeysNamesAndPlaces) {
 }
 
 TEST(AnswerNumbers, ThatAreNotThereSayWhatIs) {
-  EXPECT_THAT(refusal("planners.fast.distance"),
-              HasSubstr("there is no 'distance' in 'planners.fast'; expected one of planner, distance_m, "));
-  EXPECT_THAT(refusal("planers.fast"), HasSubstr("there is no 'planers.fast' in the answer; expected one of schema, verdict"));
+  EXPECT_THAT(refusal("planners.fast.distance"), HasSubstr("there is no 'distance' in 'planners.fast'; did you mean 'distance_m'?"));
+  EXPECT_THAT(refusal("planners.fast.zzz"), HasSubstr("there is no 'zzz' in 'planners.fast'; expected one of planner, distance_m, "));
+  EXPECT_THAT(refusal("planers.fast"), HasSubstr("there is no 'planers.fast' in the answer; did you mean 'planners'?"));
   EXPECT_THAT(refusal("planners.fast"), HasSubstr("'planners.fast' is no number; expected one of its members: planner, distance_m"));
-  EXPECT_THAT(refusal("time_to_limit_s"), HasSubstr("'time_to_limit_s' is null"));
+  EXPECT_THAT(refusal("margin_A"), HasSubstr("'margin_A' is null"));
   EXPECT_THAT(refusal("verdict"), HasSubstr("'verdict' is \"pass\"; expected a number"));
   EXPECT_THAT(refusal("runaway"), HasSubstr("'runaway' is false; expected a number"));
   EXPECT_THAT(refusal("none"), HasSubstr("'none' is empty"));
@@ -87,15 +90,14 @@ TEST(AnswerNumbers, HaveTheUnitOfTheirNameOrOfTheUnitBeside) {
   EXPECT_EQ(unit("error.winding_C.samples"), "") << "a count of a signal";
   EXPECT_EQ(unit("heat_W.max"), "W");
   EXPECT_EQ(unit("limited_s.guard"), "s") << "a group of times";
-  EXPECT_EQ(unit("tests.winding_C.ljung_box_p"), "");
+  EXPECT_EQ(unit("residual_tests.before.winding_C.ljung_box_p"), "");
+  EXPECT_EQ(unit("residual_tests.before.winding_C.periodogram_over_band"), "");
+  EXPECT_EQ(unit("residual_tests.before.winding_C.correlated_with.current"), "");
+  EXPECT_EQ(unit("power_balance_W.copper_loss.winding"), "W") << "a group of groups of powers";
+  EXPECT_EQ(unit("curve.driver.0"), "rad/s");
+  EXPECT_EQ(unit("curve.value.0"), "W");
   EXPECT_EQ(unit("probability_over_limit"), "");
   EXPECT_EQ(unit("knots.0"), "");
-  EXPECT_EQ(unit_of_name("guard_missing_A_s"), "A s");
-  EXPECT_EQ(unit_of_name("temperature_coefficient_per_K"), "1/K");
-  EXPECT_EQ(unit_of_name("slope_A_per_K_s"), "A/(K s)");
-  EXPECT_EQ(unit_of_name("a_V"), "V");
-  EXPECT_EQ(unit_of_name("winding_per_stator_K"), "K");
-  EXPECT_EQ(unit_of_name("current_per_iq"), "");
 }
 
 class CommandChecks : public testing::Test {
@@ -137,7 +139,7 @@ TEST_F(CommandChecks, CompareEachNumberInItsUnit) {
   const std::vector<Outcome> all = outcomes(
       "\"planners.*.distance_m\" = \"at least 0.65 km\"\n"  // the shorter of both
       "planners.fast.distance_m = \"at most 900 m\"\n"      // a name with dots and without quotes
-      "\"planners.fast.peaks_C.p95\" = \"at most 150 degF\"\n"
+      "\"planners.fast.peaks_C.p95\" = \"at most 155 degF\"\n"
       "coverage_90.winding_C = \"at least 92 %\"\n"
       "over = \"at most 2\"\n"
       "coefficient_per_K = \"at most 0.004 1/K\"\n");
@@ -150,7 +152,7 @@ TEST_F(CommandChecks, CompareEachNumberInItsUnit) {
   EXPECT_FALSE(all[1].passed);
   EXPECT_THAT(all[1].reason, HasSubstr("is above the limit of 900 m"));
   EXPECT_TRUE(all[2].passed) << all[2].reason;
-  EXPECT_EQ(limit_text(all[2]), "at most 65.6 °C");
+  EXPECT_EQ(limit_text(all[2]), "at most 68.3 °C");
   EXPECT_TRUE(all[3].passed) << all[3].reason;
   EXPECT_EQ(value_text(all[3]), "93 %");
   EXPECT_TRUE(all[4].passed) << all[4].reason;
@@ -170,26 +172,66 @@ TEST_F(CommandChecks, CompareTheWorseEndOfAnInterval) {
   EXPECT_TRUE(all[2].passed) << all[2].reason;
 }
 
+// A threshold of the same name compares the same end.
+TEST_F(CommandChecks, CompareTheWorseEndOfAPercentile) {
+  const std::vector<Outcome> all = outcomes(
+      "\"planners.fast.peaks_C.p95\" = \"at most 65 degC\"\n"
+      "\"planners.slow.2.peaks_C.p95\" = \"at most 150 degC\"\n"
+      "\"planners.*.peaks_C.p95\" = \"at least 47 degC\"\n"
+      "\"planners.fast.peaks_C.p05\" = \"at most 50 degC\"\n");
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_EQ(all[0].measured->value, 66.0);
+  EXPECT_FALSE(all[1].measured) << "an interval without an upper end";
+  EXPECT_THAT(all[1].reason, AllOf(HasSubstr("has no upper end"), HasSubstr("--samples")));
+  EXPECT_TRUE(all[2].passed) << all[2].reason;
+  EXPECT_EQ(all[2].measured->value, 48.0);
+  EXPECT_TRUE(all[3].passed);
+  EXPECT_THAT(all[3].measured->detail, HasSubstr("the percentile itself is compared: the answer has no interval for it"));
+}
+
+TEST_F(CommandChecks, NullOfATimeIsNever) {
+  std::vector<Outcome> all = outcomes("time_to_limit_s = \"at least 60 s\"\n");
+  EXPECT_TRUE(all[0].passed) << all[0].reason;
+  EXPECT_EQ(value_text(all[0]), "never");
+  EXPECT_EQ(margin_text(all[0]), "–");
+  all = outcomes("time_to_limit_s = \"at most 60 s\"\n");
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_THAT(all[0].reason, HasSubstr("never happens; expected it within 60 s"));
+  EXPECT_THAT(with_new_limits(text_, all, 0.05), HasSubstr("time_to_limit_s = \"at most 60 s\"")) << "no time is long enough";
+}
+
 TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
   const std::vector<Outcome> all = outcomes(
-      "time_to_limit_s = \"at least 60 s\"\n"
+      "margin_A = \"at least 1 A\"\n"
       "\"planners.fast.distance_m\" = \"at least 5 s\"\n"
       "\"planners.fast.peaks_C.p95\" = \"at most 70 K\"\n"
       "\"error.winding_C.rmse_K\" = \"at most 5 degC\"\n"
       "distance_m = \"at least 5 m\"\n"
       "\"planners.fast.peaks_C\" = \"at most 5 degC\"\n"
-      "\"error.winding_C.*\" = \"at most 5 K\"\n");
+      "\"error.winding_C.*\" = \"at most 5 K\"\n"
+      "rank = \"at most 1\"\n");
   for (const Outcome& each : all) {
     EXPECT_FALSE(each.passed);
     EXPECT_FALSE(each.measured) << each.limit.type->name;
   }
   EXPECT_THAT(all[0].reason, HasSubstr("is null"));
   EXPECT_THAT(all[1].reason, HasSubstr("'s' is no unit of this quantity"));
-  EXPECT_THAT(all[2].reason, HasSubstr("out of range"));
+  EXPECT_THAT(all[2].reason, HasSubstr("\"at most 70 K\" is an absolute temperature"));
   EXPECT_THAT(all[3].reason, HasSubstr("is a temperature, not a difference"));
   EXPECT_THAT(all[4].reason, HasSubstr("there is no 'distance_m' in the answer"));
   EXPECT_THAT(all[5].reason, HasSubstr("is no number"));
   EXPECT_THAT(all[6].reason, HasSubstr("different units"));
+  EXPECT_THAT(all[7].reason, HasSubstr("'rank' is a threshold, not a number of a command's answer"));
+}
+
+TEST_F(CommandChecks, AListLimitsBothSides) {
+  const std::vector<Outcome> all = outcomes("over = [\"at least 1\", \"at most 3\"]\nplanners.fast.distance_m = [\"at least 1 km\"]\n");
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_TRUE(all[0].passed) << all[0].reason;
+  EXPECT_TRUE(all[1].passed) << all[1].reason;
+  EXPECT_FALSE(all[2].passed);
+  EXPECT_EQ(all[1].limit.at.column, 23) << "each limit has its own place";
+  EXPECT_THAT(problem("over = [\"at least 1\", 3]\n"), HasSubstr("is a number; expected a limit as text"));
 }
 
 TEST_F(CommandChecks, WrongLimitsAreReportedAtTheirPlace) {
@@ -213,11 +255,17 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
   std::vector<Outcome> all = outcomes(
       "\"planners.fast.distance_m\" = 'at least 1 km' # far\n"
       "over = \"at most 9\"\n"
-      "planners.fast.peaks_C.p95 = \"at most 30 degC\"\n");
+      "planners.fast.peaks_C.p05 = \"at most 30 degC\"\n"
+      "cold_C = \"at most 5 degC\"\n"
+      "room_C = \"at least 50 degC\"\n"
+      "idle_s = \"at most 3 s\"\n");
   const std::string after = with_new_limits(text_, all, 0.05);
   EXPECT_THAT(after, HasSubstr("\"planners.fast.distance_m\" = 'at least 0.855 km' # far\n"));
   EXPECT_THAT(after, HasSubstr("over = \"at most 2.1\"\n"));
-  EXPECT_THAT(after, HasSubstr("planners.fast.peaks_C.p95 = \"at most 63.4 degC\"\n")) << "5 % of the rise over 25 degC";
+  EXPECT_THAT(after, HasSubstr("planners.fast.peaks_C.p05 = \"at most 41 degC\"\n")) << "5 % of at least 20 K";
+  EXPECT_THAT(after, HasSubstr("cold_C = \"at most 11.6 degC\"\n")) << "below 25 degC";
+  EXPECT_THAT(after, HasSubstr("room_C = \"at least 24 degC\"\n")) << "no rise at all";
+  EXPECT_THAT(after, HasSubstr("idle_s = \"at most 0.01 s\"\n")) << "5 % of 0.2 s";
   EXPECT_TRUE(std::ranges::all_of(all, &Outcome::passed));
 }
 

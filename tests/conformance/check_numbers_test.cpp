@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <regex>
 
 #include "program_run.h"
+#include "recording/quantities.h"
 #include "soak_example.h"
 #include "support/source_folder.h"
 
@@ -22,7 +24,7 @@ using testing::HasSubstr;
 /// The commands of the interface with small inputs.
 std::vector<std::string> commands() {
   const std::string friction_log = (kSource / "reports/friction_test/steady_state_test.csv").string();
-  return {"evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_42m_24v --samples 20",
+  return {"evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_42m_24v --samples 80",
           "simulate --motor maxon_ecx_flat_42m_24v --robot roboteam_twente_v2024 --duty division_a_match --guard on",
           "derate --motor maxon_ecx_flat_42m_24v --robot roboteam_twente_v2024 --samples 60",
           fmt::format("predict --model {} '{}'", kMotor, log("match_1.csv")),
@@ -49,10 +51,29 @@ void collect(const ordered_json& value, const std::string& name, std::vector<Nam
     for (std::size_t i = 0; i < value.size(); ++i) {
       const bool has_key = value[i].is_object() && !value[i].empty();
       const ordered_json first = has_key ? value[i].begin().value() : ordered_json();
-      collect(value[i], before + (first.is_string() ? first.get<std::string>() : first.is_number_integer() ? first.dump() : std::to_string(i)),
+      collect(value[i],
+              before + (first.is_string()           ? first.get<std::string>()
+                        : first.is_number_integer() ? first.dump()
+                                                    : std::to_string(i)),
               all);
     }
   }
+}
+
+/// Returns whether a limit has the unit of a signal that encloses its number: of "error.winding_C.samples" it must not be a temperature.
+bool has_unit_of_a_signal(const std::string& name, const std::string& limit) {
+  const std::size_t last = name.rfind('.');
+  for (std::size_t begin = 0; last != std::string::npos && begin < last;) {
+    const std::size_t end = name.find('.', begin);
+    const std::optional<recording::Quantity> signal = recording::quantity_named(name.substr(begin, end - begin));
+    const bool is_list = std::isdigit(static_cast<unsigned char>(name[end + 1])) != 0;
+    // A quantity without meaning is not in the table of the signals.
+    if (signal && !signal->meaning.empty() && !signal->unit.empty() && !is_list && limit.ends_with(" " + signal->unit)) {
+      return true;
+    }
+    begin = end + 1;
+  }
+  return false;
 }
 
 class EveryNumber : public testing::TestWithParam<std::size_t> {
@@ -110,6 +131,9 @@ TEST_P(EveryNumber, CanHaveALimit) {
     limits[i] = fmt::format("at most {:.12g}{}", numbers[i].value + room, has_unit ? " " + named[1].str() : "");
   }
   EXPECT_GT(with_unit, 0U);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    EXPECT_FALSE(has_unit_of_a_signal(numbers[i].name, limits[i])) << numbers[i].name << " " << limits[i];
+  }
   const ordered_json exact = thresholds(command, numbers, limits);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const bool has_interval = exact[i].at("detail").get<std::string>().find("95 % interval") != std::string::npos;
@@ -119,9 +143,8 @@ TEST_P(EveryNumber, CanHaveALimit) {
   EXPECT_THAT(folder_.names(), ElementsAre("all.check.toml")) << "a command of a check writes no file";
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryCommand, EveryNumber, testing::Range(std::size_t{0}, std::size_t{7}), [](const auto& each) {
-  return commands().at(each.param).substr(0, commands().at(each.param).find(' '));
-});
+INSTANTIATE_TEST_SUITE_P(OfEveryCommand, EveryNumber, testing::Range(std::size_t{0}, std::size_t{7}),
+                         [](const auto& each) { return commands().at(each.param).substr(0, commands().at(each.param).find(' ')); });
 
 class CommandOfACheck : public EveryNumber {
  protected:
@@ -158,6 +181,26 @@ TEST_F(CommandOfACheck, RunsInTheFolderOfItsFileWithTheDataFolder) {
   EXPECT_THAT(done.out, testing::Not(HasSubstr("there is no motor"))) << done.err;
   const ordered_json answer = ordered_json::parse(done.out);
   EXPECT_TRUE(answer.at("thresholds").at(1).at("passed").get<bool>()) << answer;
+}
+
+TEST_F(CommandOfACheck, KnowsThePercentilesAndTheRestOfAMotor) {
+  const std::string command =
+      "evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors maxon_ecx_flat_42m_24v --samples 80";
+  const ordered_json motor = ordered_json::parse(run_line("heatsoak " + command + " --json -", options_).out).at("motors").at(0);
+  const ProgramRun done = checked(command,
+                                  "motors.maxon_ecx_flat_42m_24v.winding_peak_C.p95 = \"at most 150 degC\"\n"
+                                  "\"motors.*.rest_of_hot_motor.20min.rest_all_s\" = \"at most 600 s\"\n"
+                                  "\"motors.*.time_to_limit_s\" = [\"at least 1 h\", \"at most 1 h\"]\n",
+                                  {"--json", "-"});
+  const ordered_json thresholds = ordered_json::parse(done.out).at("thresholds");
+  EXPECT_EQ(thresholds.at(0).at("value"), motor.at("winding_peak_C").at("p95_ci95").at(1));
+  EXPECT_GT(thresholds.at(0).at("value").get<double>(), motor.at("winding_peak_C").at("p95").get<double>());
+  EXPECT_EQ(thresholds.at(1).at("value"), motor.at("rest_of_hot_motor").at(2).at("rest_all_s"));
+  EXPECT_EQ(thresholds.at(1).at("unit"), "s");
+  EXPECT_TRUE(motor.at("time_to_limit_s").is_null()) << "it never reaches a limit";
+  EXPECT_TRUE(thresholds.at(2).at("passed").get<bool>());
+  EXPECT_FALSE(thresholds.at(3).at("passed").get<bool>());
+  EXPECT_TRUE(thresholds.at(3).at("evaluated").get<bool>());
 }
 
 TEST_F(CommandOfACheck, UpdateRewritesItsLimitOnceAndThenNothing) {

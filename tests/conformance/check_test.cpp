@@ -152,7 +152,7 @@ TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {
   EXPECT_EQ(threshold.at("evaluated"), false);
   EXPECT_EQ(threshold.at("line"), 7);
   EXPECT_THAT(threshold.at("reason"), HasSubstr("ours.toml: cannot be read"));
-  EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<error type=\"not_evaluated\" message=\"ours.toml: cannot be read"));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<error type=\"not_evaluated\" message=\"robot.check.toml:5:9: motor: ours.toml: cannot be read"));
 }
 
 TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {

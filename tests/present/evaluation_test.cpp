@@ -142,6 +142,7 @@ simulate::EvaluationAnswer answer_with(std::vector<select::MotorEvaluation> resu
                                     .conditions = {},
                                     .demand = {},
                                     .results = std::move(results),
+                                    .rests = {},
                                     .closed_loop = {},
                                     .ranks = {},
                                     .changes = {}};

@@ -29,7 +29,8 @@ inline Measured measured_peak(const Check& check, Computations& computations, se
   if (!bounds_C || !peak_C.p50 || !peak_C.p95 || !std::isfinite(bounds_C->high)) {
     throw base::Failure(
         base::ExitCode::bad_input,
-        fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}",
+        fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}. Set "
+                    "samples = \"500\", or leave it out",
                     check.samples));
   }
   return {
