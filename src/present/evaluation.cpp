@@ -335,8 +335,12 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   if (answer.duty.shape_data->depends_on_robot()) {
     document.add_note(
         Severity::background,
-        "`heatsoak simulate` gives other temperatures, because here the plan is followed exactly at the nominal voltage: corrections and "
-        "slip add heat there; grip, voltage and current limits take heat away. --closed-loop ranks motors with all that.");
+        fmt::format(
+            "{}, because {} the plan is followed exactly at the nominal voltage: corrections and slip add heat {}; grip, voltage and "
+            "current limits take heat away.{}",
+            answer.closed_loop ? "The games in closed loop give other temperatures" : "`heatsoak simulate` gives other temperatures",
+            answer.closed_loop ? "without it" : "here", answer.closed_loop ? "in it" : "there",
+            answer.closed_loop ? "" : " --closed-loop ranks motors with all that."));
   }
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
   for (const auto& [id, rests] : answer.rests) {
@@ -362,7 +366,7 @@ report::Chart evaluation_chart(const simulate::EvaluationAnswer& answer) {
 
 Document evaluation_document(const simulate::EvaluationAnswer& answer) {
   Document document = ranking_document(answer);
-  add_motor_notes(document, answer.motors, answer.closed_loop.has_value());
+  add_motor_notes(document, answer.motors, answer.closed_loop ? Neighbours::known_in_closed_loop : Neighbours::unknown);
   add_lines(document.notes, default_spreads_text(answer.motors), Severity::note);
   if (answer.closed_loop) {
     document.headline.clear();

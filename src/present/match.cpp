@@ -194,8 +194,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
   if (!answer.is_sensing_ideal) {
     add_missing_sensors(document, answer.robot);
   }
-  constexpr bool kHasNeighbours = true;
-  add_motor_notes(document, {&answer.motor, 1}, kHasNeighbours);
+  add_motor_notes(document, {&answer.motor, 1}, Neighbours::known);
   if (answer.guard_use != simulate::GuardUse::off) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }

@@ -49,15 +49,16 @@ std::string effects_under_conditions(std::span<const motor::Motor> motors) {
   return text;
 }
 
-std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neighbours) {
+std::string inactive_effects(std::span<const motor::Motor> motors, Neighbours neighbours) {
   std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
   for (const motor::Motor& motor : motors) {
     for (const motor::MotorEffect& effect : motor.effects) {
       const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
       const auto needs = [&](thermal::Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
-      const bool needs_neighbour = !has_neighbours && needs(thermal::Signal::neighbour_temperature);
+      const bool needs_neighbour = neighbours != Neighbours::known && needs(thermal::Signal::neighbour_temperature);
       if (needs_neighbour) {
-        text += fmt::format("{}: {} is left out, because a duty does not state the neighbour's temperature\n", motor.id, effect.name);
+        text += fmt::format("{}: {} is left out{}, because a duty does not state the neighbour's temperature\n", motor.id, effect.name,
+                            neighbours == Neighbours::known_in_closed_loop ? " of the table and the picture without a closed loop" : "");
       }
       if (needs(thermal::Signal::age)) {
         text += fmt::format("{}: {} is that of a new motor, because a duty does not state the operating hours\n", motor.id, effect.name);
@@ -67,9 +68,9 @@ std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neig
   return text;
 }
 
-void add_motor_notes(Document& document, std::span<const motor::Motor> motors, bool has_neighbours) {
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors, Neighbours neighbours) {
   add_lines(document.notes, doubtful_fits(motors), Severity::warning);
-  add_lines(document.notes, inactive_effects(motors, has_neighbours), Severity::note);
+  add_lines(document.notes, inactive_effects(motors, neighbours), Severity::note);
 }
 
 std::string doubtful_fits(std::span<const motor::Motor> motors) {

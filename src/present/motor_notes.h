@@ -9,12 +9,18 @@
 
 namespace heatsoak::present {
 
+/// Whether a prediction contains all motors of a robot, so that each has the temperature of its neighbours.
+enum class Neighbours {
+  unknown,              ///< one motor on a duty
+  known,                ///< all motors in closed loop
+  known_in_closed_loop  ///< both: games in closed loop, and one motor on the duty for comparison
+};
+
 /// Adds the notes that apply to every prediction with these motors: doubtful_fits() as warnings, inactive_effects() as notes.
-/// `has_neighbours`: the prediction contains all motors of a robot, so each has the temperature of its neighbours.
-void add_motor_notes(Document& document, std::span<const motor::Motor> motors, bool has_neighbours = false);
+void add_motor_notes(Document& document, std::span<const motor::Motor> motors, Neighbours neighbours = Neighbours::unknown);
 
 /// Returns a line for each effect with an unknown input and how it is treated; empty if there is none.
-std::string inactive_effects(std::span<const motor::Motor> motors, bool has_neighbours = false);
+std::string inactive_effects(std::span<const motor::Motor> motors, Neighbours neighbours = Neighbours::unknown);
 
 /// Returns the lines of effects that depend on a log column; these use the value of the curve that gives the highest temperature.
 std::string columns_at_their_hottest(std::span<const motor::Motor> motors);

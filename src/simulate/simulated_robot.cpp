@@ -1,10 +1,12 @@
 #include "simulate/simulated_robot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/copper.h"
+#include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "robot/wheels.h"
 #include "thermal/ensemble.h"
@@ -33,6 +35,25 @@ double shortest_of_longest_steps_s(const robot::PlantConfig& plant, const therma
   utmost.speed_rms_rad_per_s = utmost.speed_mean_rad_per_s;
   utmost.vehicle_speed_m_per_s = utmost.speed_mean_rad_per_s * (plant.body.kinematics.wheel_radius_m / plant.gear_ratio);
   return std::min(thermal::longest_step_s(network, parameters, rest), thermal::longest_step_s(network, parameters, utmost));
+}
+
+/// Returns the node at which the effects neighbour_coupling of the motor act; the stator without such an effect. Throws Failure (bad_input)
+/// if they act at several nodes, because a motor has one temperature for its neighbours.
+std::size_t node_beside_neighbours(const thermal::Network& network, const motor::Motor& motor) {
+  std::optional<int> node;
+  for (const thermal::EffectInPlace& each : network.effects()) {
+    if (each.type->name != "neighbour_coupling") {
+      continue;
+    }
+    if (node && *node != each.node_index.front()) {
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("{}: effects.{} couples the {} with the neighbours, another effect the {}; expected one node for all "
+                                      "effects neighbour_coupling in a closed loop",
+                                      motor.id, each.name, network.node_name(each.node_index.front()), network.node_name(*node)));
+    }
+    node = each.node_index.front();
+  }
+  return static_cast<std::size_t>(node.value_or(motor::states::stator));
 }
 
 }  // namespace
@@ -72,22 +93,19 @@ struct SimulatedRobot::Heating {
         parameters(same_in_all_lanes(network.values())),
         thermal(network, parameters,
                 std::vector<thermal::Lanes>(static_cast<std::size_t>(network.state_count()), thermal::Lanes::Constant(start_C))),
-        longest_step_s(shortest_of_longest_steps_s(plant, network, parameters, ambient_C)) {
+        longest_step_s(shortest_of_longest_steps_s(plant, network, parameters, ambient_C)),
+        coupled_node(node_beside_neighbours(network, motor)) {
     static_assert(robot::kMostWheels <= base::kLanes);
     means.ambient_C = thermal::Lanes::Constant(ambient_C);
     means.known = thermal::kNeighbour;
   }
 
-  /// Highest temperature of each motor's neighbours, without their windings, as the guard counts it.
+  /// Temperature of each motor's neighbours: mean of the two wheels beside it, at the node that exchanges heat with them. Then the motors
+  /// together neither gain nor lose heat by the exchange.
   void find_neighbours(int wheel_count) {
+    const thermal::Lanes& node_C = thermal.state_C()[coupled_node];
     for (int i = 0; i < wheel_count; ++i) {
-      double hottest_C = -std::numeric_limits<double>::infinity();
-      for (std::size_t node = kStator; node < thermal.state_C().size(); ++node) {
-        for (int j = 0; j < wheel_count; ++j) {
-          hottest_C = j == i ? hottest_C : std::max(hottest_C, thermal.state_C()[node][j]);
-        }
-      }
-      means.neighbour_C[i] = hottest_C;
+      means.neighbour_C[i] = 0.5 * (node_C[(i + 1) % wheel_count] + node_C[(i + wheel_count - 1) % wheel_count]);
     }
   }
 
@@ -96,6 +114,7 @@ struct SimulatedRobot::Heating {
   std::vector<thermal::Lanes> parameters;
   thermal::EnsembleRun thermal;  ///< one wheel per lane
   double longest_step_s;
+  std::size_t coupled_node;                       ///< node that exchanges heat with the neighbours
   thermal::OperatingPoint<thermal::Lanes> means;  ///< means over the last kThermalPeriod_s
   Load load;
   robot::Wheels last_rad_per_s = robot::Wheels::Zero();

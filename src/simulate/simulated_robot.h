@@ -34,14 +34,15 @@ struct EnergyAccount {
 
 /// One motor per wheel, all of the same type. The robot starts at rest with a full battery and all motors at one temperature. R follows the
 /// winding temperature and K_t the stator temperature, which the magnets are assumed to have. The motor's thermal network advances every
-/// kThermalPeriod_s with the mean load of this period.
+/// kThermalPeriod_s with the mean load of this period. An effect neighbour_coupling exchanges heat with the motors of the two wheels beside
+/// it, at the same node of all three.
 class SimulatedRobot {
  public:
   static constexpr double kPeriod_s = 0.001;
   static constexpr double kThermalPeriod_s = 0.01;
 
   /// Motors start at `start_C`; if it is empty, at ambient temperature. Throws Failure (bad_input) that names the values missing from the
-  /// robot or motor file.
+  /// robot or motor file, or effects neighbour_coupling at several nodes.
   SimulatedRobot(const robot::Robot& robot, const motor::Motor& motor, double ambient_C, std::optional<double> start_C = {});
   ~SimulatedRobot();
   SimulatedRobot(const SimulatedRobot&) = delete;

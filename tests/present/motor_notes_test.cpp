@@ -37,8 +37,9 @@ TEST(MotorNotes, TheNeighbourIsKnownOnlyWithAllMotorsOfARobot) {
       "[effects.plate]\ntype = \"neighbour_coupling\"\n"
       "conductance = { value = \"0.05 W/K\", origin = \"estimated\", derivation = \"a test\" }\n");
   EXPECT_THAT(inactive_effects({&motor, 1}), HasSubstr("plate is left out"));
-  constexpr bool kHasNeighbours = true;
-  EXPECT_EQ(inactive_effects({&motor, 1}, kHasNeighbours), "");
+  EXPECT_EQ(inactive_effects({&motor, 1}, Neighbours::known), "");
+  EXPECT_THAT(inactive_effects({&motor, 1}, Neighbours::known_in_closed_loop),
+              HasSubstr("plate is left out of the table and the picture without a closed loop"));
 }
 
 // A duty has no age, and the law then takes the motor as new.
