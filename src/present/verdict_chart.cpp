@@ -57,7 +57,7 @@ bool has_bands(std::size_t motors) {
 }
 
 report::ChartPanel panel(const std::vector<const select::MotorEvaluation*>& shown, bool of_winding, bool has_cycles) {
-  report::ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .range_label = "peaks"};
+  report::ChartPanel result{.title = of_winding ? "Winding" : "Stator", .y_label = "temperature / °C", .range_label = "sample peaks"};
   std::map<double, std::vector<std::string>> limits_C;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const select::TemperatureCurves& curves = shown[i]->curves;
@@ -125,11 +125,12 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
   // A load that the robot's motion demands, such as a match, does not repeat in cycles.
   const bool has_cycles = !duty.shape_data->depends_on_robot();
+  constexpr std::string_view kAreas = "pale areas: 5\u00a0% to 95\u00a0% of the samples at each time; ";
   const std::string_view of_cycles = has_cycles ? ", highest and lowest of each load cycle" : "";
   return {.title = title_of(results, robot, duty),
           .subtitle = fmt::format("{}{}{}{}", shown.size() < results.size() ? selection_of(shown, results.size(), robot) : "", duty.summary,
-                                  sampled ? fmt::format("; lines: nominal{}; {}bars of the peaks: 5\u00a0% to 95\u00a0% of samples",
-                                                        of_cycles, has_bands(shown.size()) ? "pale areas and " : "")
+                                  sampled ? fmt::format("; lines: nominal{}; {}bars: 5\u00a0% to 95\u00a0% of the samples' peaks",
+                                                        of_cycles, has_bands(shown.size()) ? kAreas : std::string_view())
                                           : fmt::format("; nominal values{}", of_cycles),
                                   estimated ? "; thermal data partly estimated" : ""),
           .x_label = "time / min",

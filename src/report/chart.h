@@ -51,7 +51,7 @@ struct ChartPanel {
   std::vector<ChartCurve> curves = {};
   std::vector<ChartBand> bands = {};
   std::vector<ChartRange> ranges = {};
-  std::string range_label = {};  ///< below the bars of `ranges`
+  std::string range_label = {};  ///< above the bars of `ranges`
   std::vector<ChartLevel> levels = {};
   bool logarithmic = false;  ///< logarithmic y axis; non-positive values interrupt the line
 };

@@ -108,6 +108,9 @@ TEST_F(ChartTest, BarsOfRangesStandBesideTheCurvesAtTheirValues) {
   const auto elements = drawn(chart);
   EXPECT_EQ(texts(elements, "peaks"), 1U);
   const SeenPanel winding = seen_panels(elements).at(1);
+  const auto label = std::ranges::find_if(elements, [](const Element& each) { return each.name == "text" && each.text == "peaks"; });
+  ASSERT_NE(label, elements.end());
+  EXPECT_LT(std::stod(label->at("y")), winding.y.px(155.0)) << "above the bars: in the row of the ticks it reads as a unit";
   const double last_px = winding.x.px(40.0);
   for (const std::vector<Point>& curve : lines(elements, blue)) {
     EXPECT_LE(curve.back().x_px, last_px + 1.0) << "the curves end before the bars";

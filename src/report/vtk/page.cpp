@@ -27,7 +27,7 @@ constexpr double tick_distance_y_px = 36.0;
 constexpr double least_plot_height_px = 60.0;
 constexpr double headroom = 0.05;
 constexpr double range_distance_px = 14.0;  // between two bars
-constexpr double least_ranges_px = 60.0;    // room for the label below the bars
+constexpr double least_ranges_px = 84.0;    // room for the label above the bars
 
 struct LegendEntry {
   std::string name;
@@ -260,7 +260,7 @@ class PageBuilder {
     place.horizontal.range.high += (of_curves.high - of_curves.low) * ranges_px() / curves_px;
     place.vertical = {y_range(panel), bottom_px, top_px};
     place.x_ticks = ticks(of_curves, curves_px / tick_distance_x_px);
-    add_ranges(panel, left_px_ + curves_px, bottom_px, place);
+    add_ranges(panel, left_px_ + curves_px, top_px, place);
     place.y_ticks = ticks(place.vertical.range, plot_px / tick_distance_y_px);
     add_y_label(panel, (top_px + bottom_px) / 2.0);
     add_level_names(panel, place);
@@ -278,7 +278,7 @@ class PageBuilder {
   }
 
   /// Places the bars side by side to the right of the curves.
-  void add_ranges(const ChartPanel& panel, double left_px, double bottom_px, PanelPlace& place) {
+  void add_ranges(const ChartPanel& panel, double left_px, double top_px, PanelPlace& place) {
     if (panel.ranges.empty()) {
       return;
     }
@@ -290,7 +290,8 @@ class PageBuilder {
       x_px += range_distance_px;
     }
     place.x_ticks.push_back({x_range(chart_).high, ""});  // a line between curves and bars
-    add({.text = printable(panel.range_label), .x_px = middle_px, .y_px = bottom_px + 16.0, .style = tick_style, .anchor = Anchor::middle});
+    // Below the axis the label would read as the unit of the last tick.
+    add({.text = printable(panel.range_label), .x_px = middle_px, .y_px = top_px - 5.0, .style = tick_style, .anchor = Anchor::middle});
   }
 
   void add_y_label(const ChartPanel& panel, double middle_px) {
