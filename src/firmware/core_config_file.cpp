@@ -28,14 +28,24 @@ std::string of_motor(const motor::Motor& motor, std::string_view key) {
                                          : fmt::format("motor file: {} ({})", key, base::to_string(found->second.origin));
 }
 
-Origins wheel_origins(bool has_friction, bool has_slip) {
+/// Returns the origin of the slip factors, which is the same for all wheels if the file states one.
+std::string origin_of_slip(const robot::Robot& robot) {
+  if (robot.wheels.slip_factor.empty()) {
+    return "1: the robot file has no wheels.slip_factors";
+  }
+  const auto stated = robot.parameters.find("wheels.slip_factors[0]");
+  return stated == robot.parameters.end() ? "robot file: wheels.slip_factors"
+                                          : fmt::format("robot file: wheels.slip_factors ({})", base::to_string(stated->second.origin));
+}
+
+Origins wheel_origins(bool has_friction, const std::string& slip) {
   return {
       {"rolling_x_share", "robot file: wheels.axis_angles"},
       {"rolling_y_share", "robot file: wheels.axis_angles"},
       {"inverse_x_factor", "pseudo-inverse of the wheels' directions and contact_radius_m"},
       {"inverse_y_factor", "pseudo-inverse of the wheels' directions and contact_radius_m"},
       {"inverse_yaw_per_m", "pseudo-inverse of the wheels' directions and contact_radius_m"},
-      {"slip_factor", has_slip ? "robot file: wheels.slip_factors" : "1: the robot file has no wheels.slip_factors"},
+      {"slip_factor", slip},
       {"level_load_share", "robot file: wheels.axis_angles and the centre of gravity in [body]"},
       {"damping_V_s_per_rad",
        has_friction ? "back-EMF, and robot file: friction.wheel_damping, as voltage" : "back-EMF alone: the robot file has no [friction]"},
@@ -143,7 +153,7 @@ class Writer {
     for (const Origins& origins : {body_origins(source), control_origins(source)}) {
       origins_.insert(origins.begin(), origins.end());
     }
-    wheel_origins_ = wheel_origins(source.config.has_friction, !source.robot.wheels.slip_factor.empty());
+    wheel_origins_ = wheel_origins(source.config.has_friction, origin_of_slip(source.robot));
   }
 
   std::string config() {

@@ -130,6 +130,13 @@ void heat_counted_twice(const Motor& motor, Findings& findings) {
                           fmt::format("effects.{} is a {}, which the file's own parameters already contain, so its heat counts twice; "
                                       "expected only effects that the network does not have",
                                       effect.name, effect.type->name));
+    } else if (effect.type->name == "input_power_loss") {
+      findings.warning_at(
+          effect.parameters.front().at,
+          fmt::format("effects.{} is an input_power_loss, which contains the copper loss and the no-load loss of the file's "
+                      "own parameters, so their heat counts twice wherever the current is known; expected it only in a "
+                      "file for logs without a current",
+                      effect.name));
     }
   }
 }

@@ -85,7 +85,8 @@ Document motor_description(const motor::Motor& motor) {
 std::string_view robot_unit(std::string_view key) {
   const std::string_view last = key.substr(key.rfind('.') + 1);
   if (key.find('[') != std::string_view::npos) {
-    return std::ranges::find(robot::wheel_parameter_specs(), last, [](const auto& each) { return each.spec.key; })->spec.unit;
+    const auto found = std::ranges::find(robot::wheel_parameter_specs(), last, [](const auto& each) { return each.spec.key; });
+    return found == robot::wheel_parameter_specs().end() ? std::string_view() : found->spec.unit;  // slip factors are pure numbers
   }
   const auto is_it = [&](const auto& each) { return each.spec.key == last && key.starts_with(each.table); };
   return std::ranges::find_if(robot::robot_parameter_specs(), is_it)->spec.unit;

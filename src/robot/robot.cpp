@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/quantity.h"
 #include "input/document.h"
@@ -13,136 +14,98 @@ namespace heatsoak::robot {
 namespace {
 
 /// The ranges include any robot for a lab floor and exclude values with a wrong unit.
-constexpr std::array<RobotParameterSpec, 29> kSpecs{
-    {{"body",
-      {"yaw_inertia", "kg m2", base::Range::between(1e-5, 200.0),
-       "moment of inertia about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
-      [](auto& robot) -> auto& {return robot.body.yaw_inertia_kg_m2;
-}  // namespace
-}  // namespace heatsoak::robot
-, {"body", {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "height of the centre of gravity above the ground"},
-   [](auto& robot) -> auto& {return robot.body.center_of_gravity_height_m;
-}
-}
-, {"body", {"center_of_gravity_x", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity ahead of the robot's axis"},
-   [](auto& robot) -> auto& {return robot.body.center_of_gravity_x_m;
-}
-}
-, {"body",
-   {"center_of_gravity_y", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity to the left of the robot's axis"},
-   [](auto& robot) -> auto& {return robot.body.center_of_gravity_y_m;
-}
-}
-, {"wheels",
-   {"inertia", "kg m2", base::Range::between(1e-9, 1.0),
-    "moment of inertia of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
-   [](auto& robot) -> auto& {return robot.wheels.inertia_kg_m2;
-}
-}
-, {"friction", {"wheel_torque", "N m", base::Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
-   [](auto& robot) -> auto& {return robot.friction.wheel_torque_Nm;
-}
-}
-, {"friction", {"wheel_damping", "N m s/rad", base::Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
-   [](auto& robot) -> auto& {return robot.friction.wheel_damping_Nm_s_per_rad;
-}
-}
-, {"friction", {"roller_drag", "", base::Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
-   [](auto& robot) -> auto& {return robot.friction.roller_drag_ratio;
-}
-}
-, {"friction", {"rolling_efficiency", "", base::Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
-   [](auto& robot) -> auto& {return robot.friction.rolling_efficiency;
-}
-}
-, {"friction.heading", {"constant", "N m", base::Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
-   [](auto& robot) -> auto& {return robot.friction.heading.constant_Nm;
-}
-}
-, {"friction.heading",
-   {"sine", "N m", base::Range::between(-20.0, 20.0), "part of the friction that grows with the wheel's share of rolling"},
-   [](auto& robot) -> auto& {return robot.friction.heading.sine_Nm;
-}
-}
-, {"friction.heading",
-   {"double_angle", "N m", base::Range::between(0.0, 20.0), "amplitude of the friction that varies with twice the direction"},
-   [](auto& robot) -> auto& {return robot.friction.heading.double_angle_Nm;
-}
-}
-, {"friction.heading", {"rotation", "N m", base::Range::between(0.0, 20.0), "friction in pure rotation"},
-   [](auto& robot) -> auto& {return robot.friction.heading.rotation_Nm;
-}
-}
-, {"traction", {"coefficient", "", base::Range::between(0.01, 5.0), "largest rolling force per normal force"},
-   [](auto& robot) -> auto& {return robot.traction.coefficient_ratio;
-}
-}
-, {"traction", {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip speed at which 0.71 of the largest rolling force is used"},
-   [](auto& robot) -> auto& {return robot.traction.slip_speed_m_per_s;
-}
-}
-, {"drive", {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with one motor"},
-   [](auto& robot) -> auto& {return robot.drive.driver_resistance_ohm;
-}
-}
-, {"drive", {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current"},
-   [](auto& robot) -> auto& {return robot.drive.driver_standby_W;
-}
-}
-, {"drive", {"control_rate", "Hz", base::Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
-   [](auto& robot) -> auto& {return robot.drive.control_rate_Hz;
-}
-}
-, {"drive", {"command_rate", "Hz", base::Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
-   [](auto& robot) -> auto& {return robot.drive.command_rate_Hz;
-}
-}
-, {"battery", {"full_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the full battery"},
-   [](auto& robot) -> auto& {return robot.battery.full_V;
-}
-}
-, {"battery", {"empty_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the empty battery"},
-   [](auto& robot) -> auto& {return robot.battery.empty_V;
-}
-}
-, {"battery", {"internal_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of the battery pack with its leads"},
-   [](auto& robot) -> auto& {return robot.battery.resistance_ohm;
-}
-}
-, {"battery", {"capacity", "A s", base::Range::between(30.0, 4e6), "charge of the battery from full to empty"},
-   [](auto& robot) -> auto& {return robot.battery.capacity_A_s;
-}
-}
-, {"limits", {"speed", "m/s", base::Range::between(0.01, 30.0), "largest speed that the team plans"},
-   [](auto& robot) -> auto& {return robot.limits.speed_m_per_s;
-}
-}
-, {"limits", {"acceleration", "m/s2", base::Range::between(0.1, 200.0), "largest acceleration when speeding up"},
-   [](auto& robot) -> auto& {return robot.limits.acceleration_m_per_s2;
-}
-}
-, {"limits",
-   {"braking", "m/s2", base::Range::between(0.1, 200.0),
-    "largest deceleration when slowing down; a match plans with the smaller of this and acceleration"},
-   [](auto& robot) -> auto& {return robot.limits.braking_m_per_s2;
-}
-}
-, {"limits", {"jerk", "m/s3", base::Range::between(0.1, 1e5), "largest rate of change of the acceleration"},
-   [](auto& robot) -> auto& {return robot.limits.jerk_m_per_s3;
-}
-}
-, {"limits", {"yaw_rate", "rad/s", base::Range::between(0.01, 200.0), "largest rate of turning"},
-   [](auto& robot) -> auto& {return robot.limits.yaw_rate_rad_per_s;
-}
-}
-, {"limits", {"yaw_acceleration", "rad/s2", base::Range::between(0.01, 1e4), "largest rate of change of the rate of turning"},
-   [](auto& robot) -> auto& {return robot.limits.yaw_acceleration_rad_per_s2;
-}
-}
-,
-}
-}
-;
+constexpr std::array<RobotParameterSpec, 29> kSpecs{{
+    {"body",
+     {"yaw_inertia", "kg m2", base::Range::between(1e-5, 200.0),
+      "moment of inertia about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
+     [](auto& robot) -> decltype(auto) { return (robot.body.yaw_inertia_kg_m2); }},
+    {"body",
+     {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "height of the centre of gravity above the ground"},
+     [](auto& robot) -> decltype(auto) { return (robot.body.center_of_gravity_height_m); }},
+    {"body",
+     {"center_of_gravity_x", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity ahead of the robot's axis"},
+     [](auto& robot) -> decltype(auto) { return (robot.body.center_of_gravity_x_m); }},
+    {"body",
+     {"center_of_gravity_y", "m", base::Range::between(-1.0, 1.0), "distance of the centre of gravity to the left of the robot's axis"},
+     [](auto& robot) -> decltype(auto) { return (robot.body.center_of_gravity_y_m); }},
+    {"wheels",
+     {"inertia", "kg m2", base::Range::between(1e-9, 1.0),
+      "moment of inertia of one wheel about its axle, without the rotor; check the unit, g cm2 or kg m2"},
+     [](auto& robot) -> decltype(auto) { return (robot.wheels.inertia_kg_m2); }},
+    {"friction",
+     {"wheel_torque", "N m", base::Range::between(0.0, 20.0), "resisting torque of one wheel, without the motor's own drag"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.wheel_torque_Nm); }},
+    {"friction",
+     {"wheel_damping", "N m s/rad", base::Range::between(0.0, 1.0), "resisting torque of one wheel per speed of the wheel"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.wheel_damping_Nm_s_per_rad); }},
+    {"friction",
+     {"roller_drag", "", base::Range::between(0.0, 1.0), "force along the axle per normal force while the rollers turn"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.roller_drag_ratio); }},
+    {"friction",
+     {"rolling_efficiency", "", base::Range::between(0.1, 1.0), "share of the wheel's torque that reaches the ground"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.rolling_efficiency); }},
+    {"friction.heading",
+     {"constant", "N m", base::Range::between(0.0, 20.0), "friction in translation, mean over the directions"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.heading.constant_Nm); }},
+    {"friction.heading",
+     {"sine", "N m", base::Range::between(-20.0, 20.0), "part of the friction that grows with the wheel's share of rolling"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.heading.sine_Nm); }},
+    {"friction.heading",
+     {"double_angle", "N m", base::Range::between(0.0, 20.0), "amplitude of the friction that varies with twice the direction"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.heading.double_angle_Nm); }},
+    {"friction.heading",
+     {"rotation", "N m", base::Range::between(0.0, 20.0), "friction in pure rotation"},
+     [](auto& robot) -> decltype(auto) { return (robot.friction.heading.rotation_Nm); }},
+    {"traction",
+     {"coefficient", "", base::Range::between(0.01, 5.0), "largest rolling force per normal force"},
+     [](auto& robot) -> decltype(auto) { return (robot.traction.coefficient_ratio); }},
+    {"traction",
+     {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip speed at which 0.71 of the largest rolling force is used"},
+     [](auto& robot) -> decltype(auto) { return (robot.traction.slip_speed_m_per_s); }},
+    {"drive",
+     {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with one motor"},
+     [](auto& robot) -> decltype(auto) { return (robot.drive.driver_resistance_ohm); }},
+    {"drive",
+     {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current"},
+     [](auto& robot) -> decltype(auto) { return (robot.drive.driver_standby_W); }},
+    {"drive",
+     {"control_rate", "Hz", base::Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
+     [](auto& robot) -> decltype(auto) { return (robot.drive.control_rate_Hz); }},
+    {"drive",
+     {"command_rate", "Hz", base::Range::between(5.0, 1000.0), "rate at which the team's computer commands the robot"},
+     [](auto& robot) -> decltype(auto) { return (robot.drive.command_rate_Hz); }},
+    {"battery",
+     {"full_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the full battery"},
+     [](auto& robot) -> decltype(auto) { return (robot.battery.full_V); }},
+    {"battery",
+     {"empty_voltage", "V", base::Range::between(1.0, 5000.0), "open-circuit voltage of the empty battery"},
+     [](auto& robot) -> decltype(auto) { return (robot.battery.empty_V); }},
+    {"battery",
+     {"internal_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of the battery pack with its leads"},
+     [](auto& robot) -> decltype(auto) { return (robot.battery.resistance_ohm); }},
+    {"battery",
+     {"capacity", "A s", base::Range::between(30.0, 4e6), "charge of the battery from full to empty"},
+     [](auto& robot) -> decltype(auto) { return (robot.battery.capacity_A_s); }},
+    {"limits",
+     {"speed", "m/s", base::Range::between(0.01, 30.0), "largest speed that the team plans"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.speed_m_per_s); }},
+    {"limits",
+     {"acceleration", "m/s2", base::Range::between(0.1, 200.0), "largest acceleration when speeding up"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.acceleration_m_per_s2); }},
+    {"limits",
+     {"braking", "m/s2", base::Range::between(0.1, 200.0),
+      "largest deceleration when slowing down; a match plans with the smaller of this and acceleration"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.braking_m_per_s2); }},
+    {"limits",
+     {"jerk", "m/s3", base::Range::between(0.1, 1e5), "largest rate of change of the acceleration"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.jerk_m_per_s3); }},
+    {"limits",
+     {"yaw_rate", "rad/s", base::Range::between(0.01, 200.0), "largest rate of turning"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.yaw_rate_rad_per_s); }},
+    {"limits",
+     {"yaw_acceleration", "rad/s2", base::Range::between(0.01, 1e4), "largest rate of change of the rate of turning"},
+     [](auto& robot) -> decltype(auto) { return (robot.limits.yaw_acceleration_rad_per_s2); }},
+}};
 
 constexpr std::array<WheelParameterSpec, 3> kWheelSpecs{{
     {{"constant", "N m", base::Range::between(0.0, 20.0), "friction of this wheel in translation"}, &HeadingWheel::constant_Nm},
@@ -236,7 +199,52 @@ void read_friction(input::Reader& top, Robot& robot) {
   friction->finish();
 }
 
-void read_wheels(input::Reader& top, Robot& robot) {
+/// Measured speed of a wheel divided by its speed without slip.
+constexpr base::ParameterSpec kSlipFactor{"slip_factors", "", base::Range::between(0.9, 1.15),
+                                          "measured speed of each wheel divided by its speed without slip, wheel 1 first"};
+
+/// Reads `{ value = ["1.02", …], origin = "…", source = "…" }`: every wheel gets its value with the common origin.
+void read_stated_slip(const input::Value& given, Robot& robot, base::Diagnostics& diagnostics) {
+  const input::Value* const list = given.find("value");
+  if (list == nullptr || list->kind != input::Value::Kind::array) {
+    diagnostics.add(list == nullptr ? given.at : list->at, "wheels.slip_factors.value",
+                    "is missing or no list; expected one factor per wheel, [\"1.02\", …]");
+    return;
+  }
+  for (std::size_t i = 0; i < list->items.size(); ++i) {
+    input::Value one = given;
+    std::ranges::find(one.members, "value", &input::Member::key)->value = list->items[i];
+    input::Value of_wheel;
+    of_wheel.kind = input::Value::Kind::table;
+    of_wheel.at = given.at;
+    of_wheel.members.push_back({std::string(kSlipFactor.key), std::move(one)});
+    const std::size_t before = diagnostics.list().size();
+    if (std::optional<base::ParameterValue> parameter =
+            input::Reader(of_wheel, "wheels", diagnostics).parameter(kSlipFactor, input::Need::required)) {
+      robot.wheels.slip_factor.push_back(parameter->value);
+      robot.parameters.emplace(fmt::format("wheels.{}[{}]", kSlipFactor.key, i), std::move(*parameter));
+    }
+    if (diagnostics.list().size() > before) {
+      robot.wheels.slip_factor.resize(list->items.size(), 1.0);
+      return;  // the others share origin and source
+    }
+  }
+}
+
+void read_slip(input::Reader& wheels, const input::Value* given, Robot& robot, base::Diagnostics& diagnostics) {
+  if (given != nullptr && given->kind == input::Value::Kind::table) {
+    wheels.pass_over(kSlipFactor.key);
+    read_stated_slip(*given, robot, diagnostics);
+  } else {
+    robot.wheels.slip_factor = wheels.quantities(kSlipFactor, input::Need::optional);
+  }
+  if (!robot.wheels.slip_factor.empty() && robot.wheels.slip_factor.size() != robot.wheels.axis_rad.size()) {
+    wheels.problem(kSlipFactor.key, fmt::format("names {} wheels, axis_angles {}; expected one factor per wheel",
+                                                robot.wheels.slip_factor.size(), robot.wheels.axis_rad.size()));
+  }
+}
+
+void read_wheels(const input::Value& root, input::Reader& top, Robot& robot, base::Diagnostics& diagnostics) {
   std::optional<input::Reader> wheels = top.table("wheels", input::Need::required);
   if (!wheels) {
     return;
@@ -255,13 +263,7 @@ void read_wheels(input::Reader& top, Robot& robot) {
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
-  robot.wheels.slip_factor = wheels->quantities(
-      {"slip_factors", "", base::Range::between(0.9, 1.15), "measured speed of each wheel divided by its speed without slip, wheel 1 first"},
-      input::Need::optional);
-  if (!robot.wheels.slip_factor.empty() && robot.wheels.slip_factor.size() != robot.wheels.axis_rad.size()) {
-    wheels->problem("slip_factors", fmt::format("names {} wheels, axis_angles {}; expected one factor per wheel",
-                                                robot.wheels.slip_factor.size(), robot.wheels.axis_rad.size()));
-  }
+  read_slip(*wheels, root.find("wheels")->find(kSlipFactor.key), robot, diagnostics);
   read_file_parameters(*wheels, "wheels", robot);
   wheels->finish();
 }
@@ -357,7 +359,7 @@ Robot robot_of(const input::Value& root, const std::filesystem::path& path) {
   robot.mass_kg = top.quantity({"mass", "kg", base::Range::between(0.1, 200.0), "mass of the robot with battery; check the unit, g or kg"},
                                input::Need::required)
                       .value_or(1.0);
-  read_wheels(top, robot);
+  read_wheels(root, top, robot, diagnostics);
   read_drive(top, robot);
   if (std::optional<input::Reader> battery = top.table("battery", input::Need::required)) {
     robot.battery.nominal_V =

@@ -58,6 +58,34 @@ TEST(RobotPlausibility, slip_factors_belong_to_wheels) {
   EXPECT_THAT([&] { with("[\"1\", \"1\", \"1\", \"102\"]"); }, testing::Throws<base::Failure>());
 }
 
+TEST(RobotPlausibility, slip_factors_can_state_origin_and_source) {
+  const std::string text = content_of_robot("roboteam_twente_v2024.toml");
+  const auto with = [&](const std::string& given) {
+    return parse_robot(std::regex_replace(text, std::regex("\n\\[wheels\\]\n"), "\n[wheels]\nslip_factors = { " + given + " }\n"),
+                       "robot.toml");
+  };
+  const std::string list = "value = [\"1.01\", \"1.02\", \"1.03\", \"1.04\"]";
+  const Robot robot = with(list + ", origin = \"measured\", source = \"drive of May\", tolerance = \"1 %\"");
+  EXPECT_THAT(robot.wheels.slip_factor, testing::ElementsAre(1.01, 1.02, 1.03, 1.04));
+  const base::ParameterValue& last = robot.parameters.at("wheels.slip_factors[3]");
+  EXPECT_EQ(last.value, 1.04);
+  EXPECT_EQ(last.origin, base::Origin::measured);
+  EXPECT_EQ(last.source, "drive of May");
+  const auto problem = [&](const std::string& given) {
+    try {
+      with(given);
+    } catch (const base::Failure& failure) {
+      return std::string(failure.what());
+    }
+    return std::string("nothing was wrong");
+  };
+  EXPECT_THAT(problem(list + ", source = \"x\""), testing::HasSubstr("wheels.slip_factors.origin: is missing"));
+  EXPECT_THAT(problem("value = \"1.01\", origin = \"measured\", source = \"x\""), testing::HasSubstr("expected one factor per wheel"));
+  EXPECT_THAT(problem("value = [\"1.01\"], origin = \"measured\", source = \"x\""), testing::HasSubstr("names 1 wheels, axis_angles 4"));
+  EXPECT_THAT(problem("value = [\"1.01\", \"9\", \"1\", \"1\"], origin = \"measured\", source = \"x\""), testing::HasSubstr("9"));
+  EXPECT_THAT(problem(list + ", orign = \"measured\", source = \"x\""), testing::HasSubstr("did you mean 'origin'"));
+}
+
 // Two wheels at ±30° on a circle of 80.4 mm touch if their radius is 80.4 mm · tan 30° = 46.4 mm.
 TEST(RobotPlausibility, wheels_overlap_from_the_radius_of_geometry_on) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"46 mm\""), IsEmpty());
