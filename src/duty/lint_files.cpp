@@ -32,8 +32,10 @@ std::vector<motor::LintFinding> look_into(const std::filesystem::path& file, con
     std::vector<motor::LintFinding> findings = motor::lint(motor);
     if (!motor.nominal.rotor_inertia_kg_m2) {
       const std::string key = "rotor_inertia";
-      findings.push_back({motor::LintFinding::Level::note, "motion", fmt::format("is missing{}", robot::kClosedLoopNeedsIt),
-                          input::place_of(file, key), key});
+      findings.push_back(
+          {motor::LintFinding::Level::note, "motion",
+           motor::LintClause{motor::LintWords::rotor_inertia_missing, {motor::LintClause{motor::LintWords::closed_loop_needs_it}}},
+           input::place_of(file, key), key});
     }
     return findings;
   }

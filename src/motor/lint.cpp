@@ -15,10 +15,10 @@
 namespace heatsoak::motor {
 namespace lint_checks {
 
-void Findings::add(LintFinding::Level level, std::string_view key, std::string message) {
+void Findings::add(LintFinding::Level level, std::string_view key, LintClause what) {
   const auto parameter = motor_.parameters.find(key);
   base::Location at = parameter != motor_.parameters.end() ? parameter->second.at : base::Location{motor_.file.string(), 0, 0};
-  add_at(level, std::move(at), std::move(message));
+  add_at(level, std::move(at), std::move(what));
 }
 
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
@@ -39,19 +39,17 @@ double resistance_ohm(const MotorValues& values, double temperature_C) {
   return values.terminal_resistance_ohm * base::resistance_ratio(values.temperature_coefficient_per_K, temperature_C);
 }
 
-std::string shown(double value, std::string_view unit) {
-  return fmt::format("{} {}", base::significant(value, 3), base::unit_for_display(unit));
-}
-std::string shown_torque(double torque_Nm) { return shown(torque_Nm * 1e3, "mN m"); }
-std::string shown_speed(double speed_rad_per_s) { return shown(base::convert(speed_rad_per_s, "rad/s", "rpm"), "rpm"); }
-std::string shown_torque_constant(double constant_Nm_per_A) { return shown(constant_Nm_per_A * 1e3, "mN m/A"); }
-std::string shown_speed_constant(double constant_rad_per_s_per_V) {
+LintQuantity shown(double value, std::string_view unit) { return {value, unit}; }
+LintQuantity shown_torque(double torque_Nm) { return shown(torque_Nm * 1e3, "mN m"); }
+LintQuantity shown_speed(double speed_rad_per_s) { return shown(base::convert(speed_rad_per_s, "rad/s", "rpm"), "rpm"); }
+LintQuantity shown_torque_constant(double constant_Nm_per_A) { return shown(constant_Nm_per_A * 1e3, "mN m/A"); }
+LintQuantity shown_speed_constant(double constant_rad_per_s_per_V) {
   return shown(base::convert(constant_rad_per_s_per_V, "rad/s/V", "rpm/V"), "rpm/V");
 }
-std::string shown_gradient(double gradient_rad_per_s_per_Nm) {
+LintQuantity shown_gradient(double gradient_rad_per_s_per_Nm) {
   return shown(base::convert(gradient_rad_per_s_per_Nm, "rad/s/(N m)", "rpm/(mN m)"), "rpm/(mN m)");
 }
-std::string shown_inertia(double inertia_kg_m2) { return shown(inertia_kg_m2 * 1e7, "g cm2"); }
+LintQuantity shown_inertia(double inertia_kg_m2) { return shown(inertia_kg_m2 * 1e7, "g cm2"); }
 
 }  // namespace lint_checks
 
@@ -118,8 +116,10 @@ std::string_view to_string(LintFinding::Level level) {
   return "note";
 }
 
+std::string message_of(const LintFinding& finding) { return text_of(finding.what); }
+
 std::string words_of(const LintFinding& finding) {
-  return fmt::format("{}: {}", finding.key.empty() ? finding.check : finding.key, finding.message);
+  return fmt::format("{}: {}", finding.key.empty() ? finding.check : finding.key, message_of(finding));
 }
 
 std::vector<LintFinding> lint(const Motor& file) {
@@ -150,7 +150,7 @@ void add_lint_errors(const Motor& motor, base::Diagnostics& diagnostics) {
   for (const LintFinding& each : lint(checked)) {
     // A line that could not be read has a problem already; a value missing because of it is not reported again.
     if (each.level == LintFinding::Level::error && !lines.contains(each.at.line)) {
-      diagnostics.add(each.at, each.check, each.message);
+      diagnostics.add(each.at, each.check, message_of(each));
     }
   }
 }

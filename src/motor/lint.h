@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "motor/lint_clause.h"
 #include "motor/motor.h"
 
 namespace heatsoak::motor {
@@ -20,14 +21,16 @@ struct LintFinding {
     note      ///< no fault, but relevant to the accuracy of results
   };
   Level level = Level::note;
-  std::string check;    ///< name of the check, "constants"
-  std::string message;  ///< finding, expected value and advice
+  std::string check;  ///< name of the check, "constants"
+  LintClause what;    ///< finding, expected value and advice
   base::Location at;
-  std::string key = {};  ///< dotted path of the value that the message is about; empty if the check's name states enough
+  std::string key = {};  ///< dotted path of the value that the finding is about; empty if the check's name states enough
 };
 
 std::string_view to_string(LintFinding::Level level);
-/// Returns the message after the key or, without a key, after the name of the check.
+/// Returns the finding as a sentence.
+std::string message_of(const LintFinding& finding);
+/// Returns the sentence after the key or, without a key, after the name of the check.
 std::string words_of(const LintFinding& finding);
 
 /// Runs all checks; each uses only values that the file gives. A motor passes if there are no errors.

@@ -18,18 +18,18 @@ class Findings {
  public:
   Findings(const Motor& motor, std::string_view check, std::vector<LintFinding>& list) : motor_(motor), check_(check), list_(list) {}
 
-  void error(std::string_view key, std::string message) { add(LintFinding::Level::error, key, std::move(message)); }
-  void warning(std::string_view key, std::string message) { add(LintFinding::Level::warning, key, std::move(message)); }
-  void note(std::string_view key, std::string message) { add(LintFinding::Level::note, key, std::move(message)); }
-  void error_at(base::Location at, std::string message) { add_at(LintFinding::Level::error, std::move(at), std::move(message)); }
-  void note_at(base::Location at, std::string message) { add_at(LintFinding::Level::note, std::move(at), std::move(message)); }
-  void warning_at(base::Location at, std::string message) { add_at(LintFinding::Level::warning, std::move(at), std::move(message)); }
+  void error(std::string_view key, LintClause what) { add(LintFinding::Level::error, key, std::move(what)); }
+  void warning(std::string_view key, LintClause what) { add(LintFinding::Level::warning, key, std::move(what)); }
+  void note(std::string_view key, LintClause what) { add(LintFinding::Level::note, key, std::move(what)); }
+  void error_at(base::Location at, LintClause what) { add_at(LintFinding::Level::error, std::move(at), std::move(what)); }
+  void note_at(base::Location at, LintClause what) { add_at(LintFinding::Level::note, std::move(at), std::move(what)); }
+  void warning_at(base::Location at, LintClause what) { add_at(LintFinding::Level::warning, std::move(at), std::move(what)); }
   /// Adds a finding about the value `key`, with its place in the file.
-  void add(LintFinding::Level level, std::string_view key, std::string message);
+  void add(LintFinding::Level level, std::string_view key, LintClause what);
 
  private:
-  void add_at(LintFinding::Level level, base::Location at, std::string message) {
-    list_.push_back({level, std::string(check_), std::move(message), std::move(at)});
+  void add_at(LintFinding::Level level, base::Location at, LintClause what) {
+    list_.push_back({level, std::string(check_), std::move(what), std::move(at)});
   }
 
   const Motor& motor_;
@@ -58,14 +58,14 @@ bool is_complete(const Motor& motor);
 /// Returns the terminal resistance at `temperature_C`, in ohm.
 double resistance_ohm(const MotorValues& values, double temperature_C);
 
-/// These functions format a value with three significant digits and its unit, as a data sheet does.
-std::string shown_torque(double torque_Nm);
-std::string shown_speed(double speed_rad_per_s);
-std::string shown_torque_constant(double constant_Nm_per_A);
-std::string shown_speed_constant(double constant_rad_per_s_per_V);
-std::string shown_gradient(double gradient_rad_per_s_per_Nm);
-std::string shown_inertia(double inertia_kg_m2);
-std::string shown(double value, std::string_view unit);
+/// These functions return a value in the unit in which a data sheet prints it.
+LintQuantity shown_torque(double torque_Nm);
+LintQuantity shown_speed(double speed_rad_per_s);
+LintQuantity shown_torque_constant(double constant_Nm_per_A);
+LintQuantity shown_speed_constant(double constant_rad_per_s_per_V);
+LintQuantity shown_gradient(double gradient_rad_per_s_per_Nm);
+LintQuantity shown_inertia(double inertia_kg_m2);
+LintQuantity shown(double value, std::string_view unit);
 
 // Electrical and mechanical values: lint_electrical.cpp
 void constants(const Motor& motor, Findings& findings);

@@ -1,12 +1,9 @@
 // Checks of electrical and mechanical values that follow from one another.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "base/quantity.h"
 #include "motor/lint_checks.h"
 
 namespace heatsoak::motor::lint_checks {
@@ -34,73 +31,66 @@ constexpr Bounds kEfficiency{0.9, 1.015};
 /// A mistaken convention: torque constant in that convention divided by the one per DC ampere.
 struct Convention {
   double factor;
-  std::string_view meaning;
+  LintWords meaning;
 };
 constexpr double kPeakPhase = std::numbers::sqrt3 * std::numbers::pi / 6.0;   // 0.907, per peak phase ampere
 constexpr double kPhaseEmf = std::numbers::pi / (3.0 * std::numbers::sqrt3);  // 1/1.654, peak EMF of a phase
 constexpr double kSqrt2 = std::numbers::sqrt2;
 constexpr double kSqrt3 = std::numbers::sqrt3;
 constexpr std::array kConventions = {
-    Convention{kPhaseEmf, "the peak EMF of one phase (V s/rad); multiply it by sqrt(3)*3/pi = 1.654"},
-    Convention{kPhaseEmf / kSqrt2, "the RMS EMF of one phase; multiply it by 2.339"},
-    Convention{kPhaseEmf * kSqrt3 / kSqrt2, "the RMS EMF between terminals; multiply it by 1.35"},
-    Convention{kPhaseEmf * kSqrt3, "the peak EMF between terminals; multiply it by 3/pi = 0.955"},
-    Convention{kPeakPhase, "a torque constant per ampere of phase peak; set conventions.torque_constant = \"per_peak_phase_ampere\""},
-    Convention{kPeakPhase * kSqrt2,
-               "a torque constant per ampere of phase RMS; set conventions.torque_constant = \"per_rms_phase_ampere\""},
-    Convention{1.0 / kPeakPhase,
-               "a torque constant per DC ampere where the file declares per_peak_phase_ampere; set conventions.torque_constant = "
-               "\"per_dc_ampere\""},
-    Convention{1.0 / (kPeakPhase * kSqrt2),
-               "a torque constant per DC ampere where the file declares per_rms_phase_ampere; set conventions.torque_constant = "
-               "\"per_dc_ampere\""},
-    Convention{kSqrt3, "sqrt(3) between phase and terminals; divide it by 1.732"},
-    Convention{1.0 / kSqrt3, "sqrt(3) between terminals and phase; multiply it by 1.732"},
-    Convention{2.0 / kSqrt3, "2/sqrt(3) between two conventions of sinusoidal current; divide it by 1.155"},
-    Convention{kSqrt3 / 2.0, "sqrt(3)/2 between two conventions of sinusoidal current; multiply it by 1.155"},
-    Convention{kSqrt2, "sqrt(2) between peak and RMS; divide it by 1.414"},
-    Convention{1.0 / kSqrt2, "sqrt(2) between RMS and peak; multiply it by 1.414"},
-    Convention{2.0, "2 between one phase and two in series; halve it"},
-    Convention{0.5, "2 between two phases in series and one; double it"},
+    Convention{kPhaseEmf, LintWords::emf_peak_of_phase},
+    Convention{kPhaseEmf / kSqrt2, LintWords::emf_rms_of_phase},
+    Convention{kPhaseEmf * kSqrt3 / kSqrt2, LintWords::emf_rms_between_terminals},
+    Convention{kPhaseEmf * kSqrt3, LintWords::emf_peak_between_terminals},
+    Convention{kPeakPhase, LintWords::per_phase_peak},
+    Convention{kPeakPhase * kSqrt2, LintWords::per_phase_rms},
+    Convention{1.0 / kPeakPhase, LintWords::declared_per_phase_peak},
+    Convention{1.0 / (kPeakPhase * kSqrt2), LintWords::declared_per_phase_rms},
+    Convention{kSqrt3, LintWords::terminals_over_phase},
+    Convention{1.0 / kSqrt3, LintWords::phase_over_terminals},
+    Convention{2.0 / kSqrt3, LintWords::sinusoidal_current},
+    Convention{kSqrt3 / 2.0, LintWords::sinusoidal_current_inverse},
+    Convention{kSqrt2, LintWords::peak_over_rms},
+    Convention{1.0 / kSqrt2, LintWords::rms_over_peak},
+    Convention{2.0, LintWords::one_phase_of_two},
+    Convention{0.5, LintWords::two_phases_of_one},
 };
 
-std::string explanation(double factor) {
+LintClause explanation(double factor) {
   const auto distance = [&](const Convention& c) { return std::abs(factor / c.factor - 1.0); };
   const auto& nearest = *std::ranges::min_element(kConventions, {}, distance);
   if (distance(nearest) > kConventionTolerance) {
-    return "no known convention explains this factor, so one of the two was misread or badly identified; take both from one sheet";
+    return {LintWords::no_convention};
   }
-  return fmt::format("these are contradictory conventions: the factor is that of {}", nearest.meaning);
+  return LintClause{LintWords::contradictory_conventions, {LintClause{nearest.meaning}}};
 }
 
 /// Returns advice. A given no-load speed decides which of the two constants is wrong.
-std::string verdict_on_constants(const MotorValues& v) {
+LintClause verdict_on_constants(const MotorValues& v) {
   const double emf_V = v.nominal_voltage_V - v.no_load_current_A * v.terminal_resistance_ohm;
   const double no_load_rad_per_s = plain(v.no_load_speed_rad_per_s);
   const bool speed_fits = !kNoLoadSpeed.excludes(plain(v.speed_constant_rad_per_s_per_V) * emf_V / no_load_rad_per_s);
   const bool torque_fits = !kNoLoadSpeed.excludes(emf_V / v.torque_constant_Nm_per_A / no_load_rad_per_s);
-  std::string torque_verdict = explanation(v.torque_constant_Nm_per_A * plain(v.speed_constant_rad_per_s_per_V));
+  LintClause torque_verdict = explanation(v.torque_constant_Nm_per_A * plain(v.speed_constant_rad_per_s_per_V));
   if (std::isnan(no_load_rad_per_s) || speed_fits == torque_fits) {
     return torque_verdict;
   }
   if (torque_fits) {
-    return fmt::format(
-        "the no-load speed of {} agrees with the torque constant, so the speed constant should be {}; take it from the sheet",
-        shown_speed(no_load_rad_per_s), shown_speed_constant(1.0 / v.torque_constant_Nm_per_A));
+    return LintClause{LintWords::speed_constant_is_wrong,
+                      {shown_speed(no_load_rad_per_s), shown_speed_constant(1.0 / v.torque_constant_Nm_per_A)}};
   }
-  return fmt::format("the no-load speed of {} agrees with the speed constant; {}", shown_speed(no_load_rad_per_s), torque_verdict);
+  return LintClause{LintWords::speed_constant_is_right, {shown_speed(no_load_rad_per_s), torque_verdict}};
 }
 
 /// Returns a hint if a quantity proportional to the resistance is off by the factor 2 between one phase and two.
-std::string resistance_hint(double found_over_listed) {
+LintClause resistance_hint(double found_over_listed) {
   if (std::abs(found_over_listed / 0.5 - 1.0) < kConventionTolerance) {
-    return "; the factor 2 means that the resistance is of one phase: set conventions.terminal_resistance = \"phase_to_star\"";
+    return {LintWords::resistance_is_of_one_phase};
   }
   if (std::abs(found_over_listed / 2.0 - 1.0) < kConventionTolerance) {
-    return "; the factor 2 means that the resistance was between terminals already: set conventions.terminal_resistance = "
-           "\"between_terminals\"";
+    return {LintWords::resistance_is_between_terminals};
   }
-  return "; check resistance, torque constant and their conventions";
+  return {LintWords::check_resistance};
 }
 
 Bounds around_one(double tolerance) { return {1.0 - tolerance, 1.0 + tolerance}; }
@@ -117,10 +107,10 @@ void constants(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double product = v.torque_constant_Nm_per_A * plain(v.speed_constant_rad_per_s_per_V);
   if (around_one(kConstantsTolerance).excludes(product)) {
-    findings.error("torque_constant", fmt::format("torque constant {} times speed constant {} is {}, expected 1 within 1.5 %; {}",
-                                                  shown_torque_constant(v.torque_constant_Nm_per_A),
-                                                  shown_speed_constant(plain(v.speed_constant_rad_per_s_per_V)),
-                                                  base::significant(product, 3), verdict_on_constants(v)));
+    findings.error("torque_constant", LintClause{LintWords::constants_product,
+                                                 {shown_torque_constant(v.torque_constant_Nm_per_A),
+                                                  shown_speed_constant(plain(v.speed_constant_rad_per_s_per_V)), LintNumber{product, 3},
+                                                  verdict_on_constants(v)}});
   }
 }
 
@@ -129,10 +119,10 @@ void mechanical_time_constant(const Motor& motor, Findings& findings) {
   const double expected_s = gradient_rad_per_s_per_Nm(v) * plain(v.rotor_inertia_kg_m2);
   const double ratio = expected_s / plain(v.mechanical_time_constant_s);
   if (around_one(kProductTolerance).excludes(ratio)) {
-    findings.error("mechanical_time_constant", fmt::format("{} is listed, but R·J/K_t² is {} with {} and {}; expected within 2 %{}",
-                                                           shown(plain(v.mechanical_time_constant_s) * 1e3, "ms"),
+    findings.error("mechanical_time_constant", LintClause{LintWords::mechanical_time_constant,
+                                                          {shown(plain(v.mechanical_time_constant_s) * 1e3, "ms"),
                                                            shown(expected_s * 1e3, "ms"), shown(v.terminal_resistance_ohm, "ohm"),
-                                                           shown_inertia(plain(v.rotor_inertia_kg_m2)), resistance_hint(ratio)));
+                                                           shown_inertia(plain(v.rotor_inertia_kg_m2)), resistance_hint(ratio)}});
   }
 }
 
@@ -142,9 +132,9 @@ void speed_torque_gradient(const Motor& motor, Findings& findings) {
   if (around_one(kProductTolerance).excludes(ratio)) {
     findings.error(
         "speed_torque_gradient",
-        fmt::format("{} is listed, but R/K_t² is {} with {} and {}; expected within 2 %{}",
-                    shown_gradient(plain(v.speed_torque_gradient_rad_per_s_per_Nm)), shown_gradient(gradient_rad_per_s_per_Nm(v)),
-                    shown(v.terminal_resistance_ohm, "ohm"), shown_torque_constant(v.torque_constant_Nm_per_A), resistance_hint(ratio)));
+        LintClause{LintWords::speed_torque_gradient,
+                   {shown_gradient(plain(v.speed_torque_gradient_rad_per_s_per_Nm)), shown_gradient(gradient_rad_per_s_per_Nm(v)),
+                    shown(v.terminal_resistance_ohm, "ohm"), shown_torque_constant(v.torque_constant_Nm_per_A), resistance_hint(ratio)}});
   }
 }
 
@@ -154,10 +144,10 @@ void stall_current(const Motor& motor, Findings& findings) {
   const double rounding_A = is_whole(plain(v.stall_current_A)) ? kWholeAmperes_A : 0.0;
   const double allowed_A = std::max(rounding_A, kStallTolerance * expected_A);
   if (std::abs(plain(v.stall_current_A) - expected_A) > allowed_A) {
-    findings.error("stall_current",
-                   fmt::format("{} is listed, but {} through {} is {}; expected within {}{}", shown(plain(v.stall_current_A), "A"),
-                               shown(v.nominal_voltage_V, "V"), shown(v.terminal_resistance_ohm, "ohm"), shown(expected_A, "A"),
-                               shown(allowed_A, "A"), resistance_hint(plain(v.stall_current_A) / expected_A)));
+    findings.error("stall_current", LintClause{LintWords::stall_current,
+                                               {shown(plain(v.stall_current_A), "A"), shown(v.nominal_voltage_V, "V"),
+                                                shown(v.terminal_resistance_ohm, "ohm"), shown(expected_A, "A"), shown(allowed_A, "A"),
+                                                resistance_hint(plain(v.stall_current_A) / expected_A)}});
   }
 }
 
@@ -165,23 +155,19 @@ void stall_torque(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double linear_Nm = v.torque_constant_Nm_per_A * v.nominal_voltage_V / v.terminal_resistance_ohm;
   const double ratio = plain(v.stall_torque_Nm) / linear_Nm;
-  const std::string found = fmt::format("{} is listed, K_t·U/R is {}", shown_torque(plain(v.stall_torque_Nm)), shown_torque(linear_Nm));
+  const LintClause found{LintWords::stall_torque, {shown_torque(plain(v.stall_torque_Nm)), shown_torque(linear_Nm)}};
   if (motor.stall_includes_saturation) {
     if (ratio >= 1.0 - kStallTolerance) {
-      findings.error("stall_torque", found +
-                                         "; with saturation, which conventions.stall_includes_saturation declares, expected less; "
-                                         "set it to false if the sheet's line is straight");
+      findings.error("stall_torque", LintClause{LintWords::stall_torque_without_saturation, {found}});
     }
   } else if (around_one(kStallTolerance).excludes(ratio) &&
              std::abs(plain(v.stall_torque_Nm) / (v.torque_constant_Nm_per_A * plain(v.stall_current_A)) - 1.0) < kStallTolerance) {
     // Stall torque and stall current are consistent, so there is no saturation.
-    findings.error("stall_torque", found + ", expected the same within 1.5 %" + resistance_hint(ratio));
+    findings.error("stall_torque", LintClause{LintWords::stall_torque_differs, {found, resistance_hint(ratio)}});
   } else if (ratio < kLooksSaturated) {
-    findings.error("stall_torque", found +
-                                       ", expected the same within 1.5 %; this looks like a torque with saturation: "
-                                       "set conventions.stall_includes_saturation = true, or check torque constant and resistance");
+    findings.error("stall_torque", LintClause{LintWords::stall_torque_looks_saturated, {found}});
   } else if (around_one(kStallTolerance).excludes(ratio)) {
-    findings.error("stall_torque", found + ", expected the same within 1.5 %; check torque constant, resistance and their conventions");
+    findings.error("stall_torque", LintClause{LintWords::stall_torque_too_large, {found}});
   }
 }
 
@@ -192,10 +178,10 @@ void no_load_speed(const Motor& motor, Findings& findings) {
   const double expected_rad_per_s = constant_rad_per_s_per_V * (v.nominal_voltage_V - v.no_load_current_A * v.terminal_resistance_ohm);
   if (kNoLoadSpeed.excludes(expected_rad_per_s / plain(v.no_load_speed_rad_per_s))) {
     findings.error("no_load_speed",
-                   fmt::format("{} is listed, but {} and {} less I_0·R give {}; expected 0.99 to 1.03 times the listed speed; "
-                               "check the {} constant and the voltage that the speed holds for",
-                               shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed_constant(constant_rad_per_s_per_V),
-                               shown(v.nominal_voltage_V, "V"), shown_speed(expected_rad_per_s), has_speed_constant ? "speed" : "torque"));
+                   LintClause{LintWords::no_load_speed,
+                              {shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed_constant(constant_rad_per_s_per_V),
+                               shown(v.nominal_voltage_V, "V"), shown_speed(expected_rad_per_s),
+                               LintClause{has_speed_constant ? LintWords::speed : LintWords::torque}}});
   }
 }
 
@@ -205,9 +191,7 @@ void max_efficiency(const Motor& motor, Findings& findings) {
   const double linear = (1.0 - root) * (1.0 - root);
   if (kEfficiency.excludes(plain(v.max_efficiency) / linear)) {
     findings.error("max_efficiency",
-                   fmt::format("{} % is listed, but (1 - sqrt(I_0·R/U))² is {} %; expected 0.9 to 1.015 times that; "
-                               "check no-load current and resistance",
-                               base::significant(100.0 * plain(v.max_efficiency), 3), base::significant(100.0 * linear, 3)));
+                   LintClause{LintWords::max_efficiency, {LintNumber{100.0 * plain(v.max_efficiency), 3}, LintNumber{100.0 * linear, 3}}});
   }
 }
 

@@ -1,6 +1,4 @@
 // Checks of orders of magnitude: values that no real motor has.
-#include <fmt/format.h>
-
 #include <cmath>
 #include <numbers>
 
@@ -50,17 +48,17 @@ constexpr double kFlat = 0.7;
 
 double body_area_m2(const MotorValues& v) { return std::numbers::pi / 4.0 * plain(v.diameter_m) * plain(v.diameter_m); }
 
-std::string shown_heat(double heat_J_per_K, double mass_kg) {
-  return fmt::format("{} ({} at a mass of {})", shown(heat_J_per_K, "J/K"), shown(heat_J_per_K / mass_kg, "J/(kg K)"),
-                     shown(1e3 * mass_kg, "g"));
+LintClause shown_heat(double heat_J_per_K, double mass_kg) {
+  return LintClause{LintWords::heat_capacity,
+                    {shown(heat_J_per_K, "J/K"), shown(heat_J_per_K / mass_kg, "J/(kg K)"), shown(1e3 * mass_kg, "g")}};
 }
 
 /// Reports an error outside `possible`, a warning outside `usual`.
-void compare(Findings& findings, std::string_view key, double value, const Bounds& usual, const Bounds& possible, std::string message) {
+void compare(Findings& findings, std::string_view key, double value, const Bounds& usual, const Bounds& possible, LintClause what) {
   if (possible.excludes(value)) {
-    findings.error(key, std::move(message));
+    findings.error(key, std::move(what));
   } else if (usual.excludes(value)) {
-    findings.warning(key, std::move(message));
+    findings.warning(key, std::move(what));
   }
 }
 
@@ -71,27 +69,25 @@ void lasting_current(const MotorValues& v, Findings& findings) {
   const double stall_A = v.nominal_voltage_V / v.terminal_resistance_ohm;
   const double share = lasting_A / stall_A;
   compare(findings, "terminal_resistance", share, kUsualLasting_share, kLasting_share,
-          fmt::format("{} heat the motor to its winding limit in the long run, which is {} times the stall current of {} ({} over {}); "
-                      "expected 0.015 to 0.5 times; check the units of resistance, voltage and thermal resistances (mohm or ohm?)",
-                      shown(lasting_A, "A"), base::significant(share, 4), shown(stall_A, "A"), shown(v.nominal_voltage_V, "V"),
-                      shown(v.terminal_resistance_ohm, "ohm")));
+          LintClause{LintWords::lasting_current,
+                     {shown(lasting_A, "A"), LintNumber{share, 4}, shown(stall_A, "A"), shown(v.nominal_voltage_V, "V"),
+                      shown(v.terminal_resistance_ohm, "ohm")}});
 }
 
 void ideal_speed(const MotorValues& v, Findings& findings) {
   const double speed_rad_per_s = v.nominal_voltage_V / v.torque_constant_Nm_per_A;
   compare(findings, "torque_constant", base::convert(speed_rad_per_s, "rad/s", "rpm"), kUsualSpeed_rpm, kSpeed_rpm,
-          fmt::format("{} over {} is a speed without load of {}, expected 200 to 60000 rpm; check the units of both (mN m/A or N m/A?)",
-                      shown(v.nominal_voltage_V, "V"), shown_torque_constant(v.torque_constant_Nm_per_A), shown_speed(speed_rad_per_s)));
+          LintClause{LintWords::ideal_speed,
+                     {shown(v.nominal_voltage_V, "V"), shown_torque_constant(v.torque_constant_Nm_per_A), shown_speed(speed_rad_per_s)}});
 }
 
 void no_load_heating(const MotorValues& v, Findings& findings) {
   const double room_K = v.winding_limit_C - kSheetAmbient_C;
   const double heating_K = v.nominal_voltage_V * v.no_load_current_A * v.thermal_resistance_stator_ambient_K_per_W;
   compare(findings, "no_load_current", heating_K / room_K, {0.0, kUsualNoLoadHeating_share}, {0.0, kNoLoadHeating_share},
-          fmt::format("without load {} at {} heat the stator by {} (thermal resistance {}), expected less than the {} from 25 degC to the "
-                      "winding limit; check the units of all three (mA or A?)",
-                      shown(v.no_load_current_A, "A"), shown(v.nominal_voltage_V, "V"), shown(heating_K, "K"),
-                      shown(v.thermal_resistance_stator_ambient_K_per_W, "K/W"), shown(room_K, "K")));
+          LintClause{LintWords::no_load_heating,
+                     {shown(v.no_load_current_A, "A"), shown(v.nominal_voltage_V, "V"), shown(heating_K, "K"),
+                      shown(v.thermal_resistance_stator_ambient_K_per_W, "K/W"), shown(room_K, "K")}});
 }
 
 void thermal_ratios(const MotorValues& v, Findings& findings) {
@@ -100,18 +96,14 @@ void thermal_ratios(const MotorValues& v, Findings& findings) {
   const double ratio = ambient_K_per_W / winding_K_per_W;
   if (kUsualThermalResistance_ratio.excludes(ratio)) {
     findings.warning("thermal_resistance_stator_ambient",
-                     fmt::format("{} from stator to ambient is {} times the {} from winding to stator, expected 0.05 to 20 times; "
-                                 "check both and their units",
-                                 shown(ambient_K_per_W, "K/W"), base::significant(ratio, 2), shown(winding_K_per_W, "K/W")));
+                     LintClause{LintWords::thermal_resistance_ratio,
+                                {shown(ambient_K_per_W, "K/W"), LintNumber{ratio, 2}, shown(winding_K_per_W, "K/W")}});
   }
   const double stator_J_per_K = v.thermal_time_constant_stator_s / ambient_K_per_W;
   const double winding_J_per_K = v.thermal_time_constant_winding_s / winding_K_per_W;
   compare(findings, "thermal_time_constant_stator", stator_J_per_K / winding_J_per_K, {0.0, kUsualHeatCapacity_ratio},
           {0.0, kHeatCapacity_ratio},
-          fmt::format("time constant over thermal resistance gives the stator {} and the winding {}, expected at most 100 times as much in "
-                      "the stator, because copper is at least 3 % of a motor's mass; check the units of both time constants (s or h?) and "
-                      "thermal resistances",
-                      shown(stator_J_per_K, "J/K"), shown(winding_J_per_K, "J/K")));
+          LintClause{LintWords::heat_capacity_ratio, {shown(stator_J_per_K, "J/K"), shown(winding_J_per_K, "J/K")}});
 }
 
 }  // namespace
@@ -133,24 +125,16 @@ void heat_capacities(const Motor& motor, Findings& findings) {
   const double winding_J_per_K = v.thermal_time_constant_winding_s / v.thermal_resistance_winding_stator_K_per_W;
   const double stator_J_per_K = v.thermal_time_constant_stator_s / v.thermal_resistance_stator_ambient_K_per_W;
   if (kWindingHeat_J_per_kg_K.excludes(winding_J_per_K / plain(v.mass_kg))) {
-    findings.error(
-        "thermal_time_constant_winding",
-        fmt::format("time constant over thermal resistance gives the winding {}, expected 10 to 150 J/(kg K) for copper and resin; "
-                    "check time constant, R_th1 and mass",
-                    shown_heat(winding_J_per_K, plain(v.mass_kg))));
+    findings.error("thermal_time_constant_winding",
+                   LintClause{LintWords::winding_heat_capacity, {shown_heat(winding_J_per_K, plain(v.mass_kg))}});
   }
   if (kStatorHeat_J_per_kg_K.excludes(stator_J_per_K / plain(v.mass_kg))) {
-    findings.error(
-        "thermal_time_constant_stator",
-        fmt::format("time constant over thermal resistance gives the stator {}, expected 100 to 900 J/(kg K) for steel and aluminium; "
-                    "check time constant, R_th2 and mass",
-                    shown_heat(stator_J_per_K, plain(v.mass_kg))));
+    findings.error("thermal_time_constant_stator",
+                   LintClause{LintWords::stator_heat_capacity, {shown_heat(stator_J_per_K, plain(v.mass_kg))}});
   }
   if (winding_J_per_K >= stator_J_per_K) {
     findings.error("thermal_time_constant_winding",
-                   fmt::format("the winding would store {} and the stator {}, expected more in the stator, which is heavier; "
-                               "are the values of winding and stator swapped?",
-                               shown(winding_J_per_K, "J/K"), shown(stator_J_per_K, "J/K")));
+                   LintClause{LintWords::heat_capacities_swapped, {shown(winding_J_per_K, "J/K"), shown(stator_J_per_K, "J/K")}});
   }
 }
 
@@ -158,24 +142,22 @@ void electrical_time_constant(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double time_constant_s = plain(v.terminal_inductance_H) / v.terminal_resistance_ohm;
   if (kElectrical_s.excludes(time_constant_s)) {
-    findings.error("terminal_inductance", fmt::format("{} over {} is {}, expected 0.02 to 5 ms; check the units of both",
-                                                      shown(1e3 * plain(v.terminal_inductance_H), "mH"),
-                                                      shown(v.terminal_resistance_ohm, "ohm"), shown(1e3 * time_constant_s, "ms")));
+    findings.error("terminal_inductance", LintClause{LintWords::electrical_time_constant,
+                                                     {shown(1e3 * plain(v.terminal_inductance_H), "mH"),
+                                                      shown(v.terminal_resistance_ohm, "ohm"), shown(1e3 * time_constant_s, "ms")}});
   }
 }
 
 void density(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   const double density_kg_per_m3 = plain(v.mass_kg) / (body_area_m2(v) * plain(v.length_m));
-  const std::string found =
-      fmt::format("{} in a body of {} diameter and {} length are {} kg/m3", shown(1e3 * plain(v.mass_kg), "g"),
-                  shown(1e3 * plain(v.diameter_m), "mm"), shown(1e3 * plain(v.length_m), "mm"), base::significant(density_kg_per_m3, 3));
+  const LintClause found{LintWords::density,
+                         {shown(1e3 * plain(v.mass_kg), "g"), shown(1e3 * plain(v.diameter_m), "mm"), shown(1e3 * plain(v.length_m), "mm"),
+                          LintNumber{density_kg_per_m3, 3}}};
   if (kDensity_kg_per_m3.excludes(density_kg_per_m3)) {
-    findings.error("mass",
-                   found + ", expected 1500 to 7500 kg/m3 (solid steel has 7850); check mass and dimensions of the body without shaft");
+    findings.error("mass", LintClause{LintWords::density_impossible, {found}});
   } else if (kUsualDensity_kg_per_m3.excludes(density_kg_per_m3)) {
-    findings.warning(density_kg_per_m3 < kUsualDensity_kg_per_m3.low ? "length" : "mass",
-                     found + ", motors have 3000 to 6500 kg/m3; check the mass, and whether the length is that of the body without shaft");
+    findings.warning(density_kg_per_m3 < kUsualDensity_kg_per_m3.low ? "length" : "mass", LintClause{LintWords::density_unusual, {found}});
   }
 }
 
@@ -184,46 +166,42 @@ void rotor_inertia(const Motor& motor, Findings& findings) {
   const double ring_kg_m2 = plain(v.mass_kg) * 0.25 * plain(v.diameter_m) * plain(v.diameter_m);
   const double ratio = plain(v.rotor_inertia_kg_m2) / ring_kg_m2;
   if (ratio > kMostInertia) {
-    findings.error("rotor_inertia",
-                   fmt::format("{} is more than half of {}, which the whole mass of {} would have at the radius of {}; check unit and mass",
-                               shown_inertia(plain(v.rotor_inertia_kg_m2)), shown_inertia(ring_kg_m2), shown(1e3 * plain(v.mass_kg), "g"),
-                               shown(500.0 * plain(v.diameter_m), "mm")));
+    findings.error("rotor_inertia", LintClause{LintWords::inertia_too_large,
+                                               {shown_inertia(plain(v.rotor_inertia_kg_m2)), shown_inertia(ring_kg_m2),
+                                                shown(1e3 * plain(v.mass_kg), "g"), shown(500.0 * plain(v.diameter_m), "mm")}});
   }
   const bool is_external = motor.rotor == "external";
   const bool may_be_external = is_external || (motor.rotor.empty() && plain(v.length_m) < kFlat * plain(v.diameter_m));
   if (may_be_external && ratio < kLeastExternalInertia) {
     findings.add(is_external ? LintFinding::Level::error : LintFinding::Level::warning, "rotor_inertia",
-                 fmt::format("{} is too little for an external rotor of a motor of {} and {} diameter, expected at least {}; {}",
-                             shown_inertia(plain(v.rotor_inertia_kg_m2)), shown(1e3 * plain(v.mass_kg), "g"),
+                 LintClause{LintWords::external_inertia_too_small,
+                            {shown_inertia(plain(v.rotor_inertia_kg_m2)), shown(1e3 * plain(v.mass_kg), "g"),
                              shown(1e3 * plain(v.diameter_m), "mm"), shown_inertia(kLeastExternalInertia * ring_kg_m2),
-                             is_external ? "check it, and whether rotor = \"external\" is right"
-                                         : "check it, or set rotor = \"internal\" if this flat motor's rotor runs inside"));
+                             LintClause{is_external ? LintWords::check_external_rotor : LintWords::check_flat_rotor}}});
   }
 }
 
 void limits(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
-  const auto compare_temperature = [&](std::string_view key, double lower_C, std::string_view lower, double upper_C,
-                                       std::string_view upper) {
+  const auto compare_temperature = [&](std::string_view key, double lower_C, LintWords lower, double upper_C, LintWords upper) {
     if (lower_C >= upper_C) {
-      findings.error(key,
-                     fmt::format("{} {} is not below the {} {}; check both", lower, shown(lower_C, "degC"), upper, shown(upper_C, "degC")));
+      findings.error(key, LintClause{LintWords::temperatures_out_of_order,
+                                     {LintClause{lower}, shown(lower_C, "degC"), LintClause{upper}, shown(upper_C, "degC")}});
     }
   };
-  compare_temperature("winding_limit", kSheetAmbient_C, "the ambient temperature of nominal values", v.winding_limit_C, "winding limit");
-  compare_temperature("ambient_max", plain(v.ambient_max_C), "highest ambient temperature", v.winding_limit_C, "winding limit");
-  compare_temperature("ambient_min", plain(v.ambient_min_C), "lowest ambient temperature", plain(v.ambient_max_C), "highest");
+  compare_temperature("winding_limit", kSheetAmbient_C, LintWords::sheet_ambient, v.winding_limit_C, LintWords::winding_limit);
+  compare_temperature("ambient_max", plain(v.ambient_max_C), LintWords::ambient_max, v.winding_limit_C, LintWords::winding_limit);
+  compare_temperature("ambient_min", plain(v.ambient_min_C), LintWords::ambient_min, plain(v.ambient_max_C), LintWords::highest);
   if (plain(v.stator_limit_C) > v.winding_limit_C) {
-    findings.error("stator_limit", fmt::format("the stator limit {} is above the winding limit {}; are they swapped?",
-                                               shown(plain(v.stator_limit_C), "degC"), shown(v.winding_limit_C, "degC")));
+    findings.error("stator_limit", LintClause{LintWords::stator_limit_above_winding,
+                                              {shown(plain(v.stator_limit_C), "degC"), shown(v.winding_limit_C, "degC")}});
   }
   if (plain(v.nominal_speed_rad_per_s) > plain(v.max_speed_rad_per_s)) {
-    findings.error("max_speed", fmt::format("nominal speed {} is above the highest permissible speed {}; check both",
-                                            shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))));
+    findings.error("max_speed", LintClause{LintWords::nominal_speed_above_highest,
+                                           {shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))}});
   } else if (plain(v.no_load_speed_rad_per_s) > plain(v.max_speed_rad_per_s)) {
-    findings.note("max_speed",
-                  fmt::format("no-load speed {} at nominal voltage is above the highest permissible speed {}: limit the voltage",
-                              shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))));
+    findings.note("max_speed", LintClause{LintWords::no_load_speed_above_highest,
+                                          {shown_speed(plain(v.no_load_speed_rad_per_s)), shown_speed(plain(v.max_speed_rad_per_s))}});
   }
 }
 

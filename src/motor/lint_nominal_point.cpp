@@ -1,11 +1,8 @@
 // Checks of the nominal point: motor constants, energy balance and heat.
-#include <fmt/format.h>
-
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "base/quantity.h"
 #include "motor/datasheet_network.h"
 #include "motor/lint_checks.h"
 #include "thermal/steady_state.h"
@@ -78,36 +75,34 @@ double commutation_ohm(const MotorValues& v) {
 void nominal_current(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   if (v.no_load_current_A >= plain(v.nominal_current_A)) {
-    findings.error("no_load_current", fmt::format("no-load current {} is not below the nominal current {}; check both",
-                                                  shown(v.no_load_current_A, "A"), shown(plain(v.nominal_current_A), "A")));
+    findings.error("no_load_current", LintClause{LintWords::no_load_current_above_nominal,
+                                                 {shown(v.no_load_current_A, "A"), shown(plain(v.nominal_current_A), "A")}});
   }
   const double linear_Nm = v.torque_constant_Nm_per_A * plain(v.nominal_current_A);
   if (kNominalTorque.excludes(plain(v.nominal_torque_Nm) / linear_Nm)) {
     findings.error(
         "nominal_current",
-        fmt::format("nominal torque {} is {} times K_t·I_n = {} (with {} and {}), expected 0.85 to 1.2 times; "
-                    "check the nominal current and the convention of the torque constant",
-                    shown_torque(plain(v.nominal_torque_Nm)), base::significant(plain(v.nominal_torque_Nm) / linear_Nm, 3),
-                    shown_torque(linear_Nm), shown_torque_constant(v.torque_constant_Nm_per_A), shown(plain(v.nominal_current_A), "A")));
+        LintClause{LintWords::nominal_torque_of_current,
+                   {shown_torque(plain(v.nominal_torque_Nm)), LintNumber{plain(v.nominal_torque_Nm) / linear_Nm, 3},
+                    shown_torque(linear_Nm), shown_torque_constant(v.torque_constant_Nm_per_A), shown(plain(v.nominal_current_A), "A")}});
   }
 }
 
 void peak_point(const Motor& motor, Findings& findings) {
   const MotorValues& v = motor.nominal;
   if (plain(v.peak_torque_Nm) < plain(v.nominal_torque_Nm)) {
-    findings.error("peak_torque", fmt::format("peak torque {} is less than the nominal torque {}; check both",
-                                              shown_torque(plain(v.peak_torque_Nm)), shown_torque(plain(v.nominal_torque_Nm))));
+    findings.error("peak_torque", LintClause{LintWords::peak_torque_below_nominal,
+                                             {shown_torque(plain(v.peak_torque_Nm)), shown_torque(plain(v.nominal_torque_Nm))}});
   }
   if (plain(v.peak_current_A) < plain(v.nominal_current_A)) {
-    findings.error("peak_current", fmt::format("peak current {} is less than the nominal current {}; check both",
-                                               shown(plain(v.peak_current_A), "A"), shown(plain(v.nominal_current_A), "A")));
+    findings.error("peak_current", LintClause{LintWords::peak_current_below_nominal,
+                                              {shown(plain(v.peak_current_A), "A"), shown(plain(v.nominal_current_A), "A")}});
   }
   const double linear_Nm = v.torque_constant_Nm_per_A * plain(v.peak_current_A);
   if (kPeakTorque.excludes(plain(v.peak_torque_Nm) / linear_Nm)) {
-    findings.error("peak_torque", fmt::format("peak torque {} is {} times K_t·I_peak = {}, expected 0.2 (saturated) to 1.2 times; "
-                                              "check the peak current and the convention of the torque constant",
-                                              shown_torque(plain(v.peak_torque_Nm)),
-                                              base::significant(plain(v.peak_torque_Nm) / linear_Nm, 3), shown_torque(linear_Nm)));
+    findings.error("peak_torque", LintClause{LintWords::peak_torque_of_current,
+                                             {shown_torque(plain(v.peak_torque_Nm)), LintNumber{plain(v.peak_torque_Nm) / linear_Nm, 3},
+                                              shown_torque(linear_Nm)}});
   }
 }
 
@@ -117,29 +112,22 @@ void power_balance(const Motor& motor, Findings& findings) {
   const double shaft_W = plain(v.nominal_torque_Nm) * plain(v.nominal_speed_rad_per_s);
   const double current_squared_A2 = plain(v.nominal_current_A) * plain(v.nominal_current_A);
   const double copper_W = current_squared_A2 * v.terminal_resistance_ohm;
-  const std::string found =
-      fmt::format("at the nominal point {} go in (U·I_n) and {} come out at the shaft (T_n·ω_n)", shown(input_W, "W"), shown(shaft_W, "W"));
+  const LintClause found{LintWords::nominal_power, {shown(input_W, "W"), shown(shaft_W, "W")}};
   if (shaft_W + copper_W > (1.0 + kPowerTolerance) * input_W) {
     findings.error("nominal_torque",
-                   fmt::format("{}, but with {} of copper loss at 25 °C it takes {}, expected at most the input within 3 %; "
-                               "check nominal current, speed, torque and resistance",
-                               found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")));
+                   LintClause{LintWords::nominal_power_above_input, {found, shown(copper_W, "W"), shown(shaft_W + copper_W, "W")}});
   }
   const double most_loss_W =
       current_squared_A2 * resistance_ohm(v, v.winding_limit_C) + drag_torque_Nm(v) * plain(v.nominal_speed_rad_per_s);
   const double explained = (shaft_W + most_loss_W) / input_W;
   if (explained > kPowerExplained.high) {
-    findings.add(
-        level_of_contradiction(motor, {"nominal_current", "nominal_torque", "nominal_speed", "terminal_resistance"}), "terminal_resistance",
-        fmt::format("{}; with {} lost in a winding at its limit and by drag it takes {} times the input, expected at most 1.08 times; "
-                    "check resistance, nominal current, speed and torque",
-                    found, shown(most_loss_W, "W"), base::significant(explained, 3)));
+    findings.add(level_of_contradiction(motor, {"nominal_current", "nominal_torque", "nominal_speed", "terminal_resistance"}),
+                 "terminal_resistance",
+                 LintClause{LintWords::nominal_losses_too_large, {found, shown(most_loss_W, "W"), LintNumber{explained, 3}}});
   }
   if (explained < kPowerExplained.low) {
-    findings.error("nominal_current",
-                   fmt::format("{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; "
-                               "check nominal current, speed and torque",
-                               found, shown(most_loss_W, "W"), shown(input_W - shaft_W - most_loss_W, "W")));
+    findings.error("nominal_current", LintClause{LintWords::nominal_losses_too_small,
+                                                 {found, shown(most_loss_W, "W"), shown(input_W - shaft_W - most_loss_W, "W")}});
   }
 }
 
@@ -150,21 +138,17 @@ void assigned_power(const Motor& motor, Findings& findings) {
   const double torque_Nm = v.nominal_torque_Nm.value_or(v.torque_constant_Nm_per_A * plain(v.nominal_current_A));
   const double speed_rad_per_s = v.max_speed_rad_per_s.value_or(plain(v.no_load_speed_rad_per_s));
   if (plain(v.assigned_power_W) > (1.0 + kPowerTolerance) * torque_Nm * speed_rad_per_s) {
-    findings.error("assigned_power",
-                   fmt::format("{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the "
-                               "assigned power; this may be the electrical input, check it",
-                               shown(plain(v.assigned_power_W), "W"), shown_torque(torque_Nm), shown_speed(speed_rad_per_s),
-                               shown(torque_Nm * speed_rad_per_s, "W")));
+    findings.error("assigned_power", LintClause{LintWords::assigned_power_too_large,
+                                                {shown(plain(v.assigned_power_W), "W"), shown_torque(torque_Nm),
+                                                 shown_speed(speed_rad_per_s), shown(torque_Nm * speed_rad_per_s, "W")}});
     return;
   }
   const double input_W = v.nominal_voltage_V * plain(v.nominal_current_A);
   const double copper_W = plain(v.nominal_current_A) * plain(v.nominal_current_A) * v.terminal_resistance_ohm;
   if (plain(v.assigned_power_W) + copper_W > (1.0 + kPowerTolerance) * input_W) {
-    findings.note("assigned_power",
-                  fmt::format("{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: "
-                              "it cannot give that power at its nominal voltage; use torque and speed instead",
-                              shown(plain(v.assigned_power_W), "W"), shown(v.nominal_voltage_V, "V"),
-                              shown(plain(v.nominal_current_A), "A"), shown(input_W, "W"), shown(copper_W, "W")));
+    findings.note("assigned_power", LintClause{LintWords::assigned_power_of_type,
+                                               {shown(plain(v.assigned_power_W), "W"), shown(v.nominal_voltage_V, "V"),
+                                                shown(plain(v.nominal_current_A), "A"), shown(input_W, "W"), shown(copper_W, "W")}});
   }
 }
 
@@ -179,30 +163,23 @@ void nominal_speed(const Motor& motor, Findings& findings) {
   const double slowest_rad_per_s =
       plain(v.no_load_speed_rad_per_s) - loss_rad_per_s_per_ohm * (resistance_ohm(v, v.winding_limit_C) + overlap_ohm);
   if (plain(v.nominal_speed_rad_per_s) > (1.0 + kSpeedTolerance) * fastest_rad_per_s) {
-    findings.error(
-        "nominal_speed",
-        fmt::format("{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected "
-                    "at most 3 % more; check resistance (between terminals?), nominal torque and speed",
-                    shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.no_load_speed_rad_per_s)),
-                    shown_torque(plain(v.nominal_torque_Nm)), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)));
+    findings.error("nominal_speed", LintClause{LintWords::nominal_speed_too_high,
+                                               {shown_speed(plain(v.nominal_speed_rad_per_s)),
+                                                shown_speed(plain(v.no_load_speed_rad_per_s)), shown_torque(plain(v.nominal_torque_Nm)),
+                                                shown(v.terminal_resistance_ohm, "ohm"), shown_speed(fastest_rad_per_s)}});
   }
   if (overlap_ohm > 0.0 && plain(v.nominal_speed_rad_per_s) < (1.0 - kSpeedTolerance) * slowest_rad_per_s) {
     const double hot_over_cold = resistance_ohm(v, v.winding_limit_C) / v.terminal_resistance_ohm;
     const double needed_ohm =
         ((plain(v.no_load_speed_rad_per_s) - plain(v.nominal_speed_rad_per_s)) / loss_rad_per_s_per_ohm - overlap_ohm) / hot_over_cold;
-    findings.error(
-        "nominal_speed",
-        fmt::format(
-            "{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected "
-            "at most 3 % less; {}",
-            shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.no_load_speed_rad_per_s)),
-            shown_torque(plain(v.nominal_torque_Nm)), shown(v.terminal_resistance_ohm, "ohm"), shown_speed(slowest_rad_per_s),
-            shown(plain(v.terminal_inductance_H) * 1e3, "mH"),
-            kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
-                ? fmt::format("it would take {}: check resistance, nominal torque and speed", shown(needed_ohm, "ohm"))
-                : fmt::format("it would take {}, about twice as much: if the resistance is that of one phase, set "
-                              "conventions.terminal_resistance = \"phase_to_star\"",
-                              shown(needed_ohm, "ohm"))));
+    findings.error("nominal_speed",
+                   LintClause{LintWords::nominal_speed_too_low,
+                              {shown_speed(plain(v.nominal_speed_rad_per_s)), shown_speed(plain(v.no_load_speed_rad_per_s)),
+                               shown_torque(plain(v.nominal_torque_Nm)), shown(v.terminal_resistance_ohm, "ohm"),
+                               shown_speed(slowest_rad_per_s), shown(plain(v.terminal_inductance_H) * 1e3, "mH"),
+                               kAboutTwo.excludes(needed_ohm / v.terminal_resistance_ohm)
+                                   ? LintClause{LintWords::resistance_needed, {shown(needed_ohm, "ohm")}}
+                                   : LintClause{LintWords::resistance_of_one_phase, {shown(needed_ohm, "ohm")}}}});
   }
 }
 
@@ -212,26 +189,20 @@ void nominal_point_heat_check(const Motor& motor, Findings& findings) {
     return;
   }
   if (heat->limit_current_A == 0.0) {
-    findings.add(
-        level_of_heat(motor), "thermal_resistance_stator_ambient",
-        fmt::format(
-            "iron and friction loss at {} bring the winding to its limit of {} without any current, expected a nominal point of {} at "
-            "{} to be possible; check no-load current and thermal resistances",
-            shown_speed(plain(motor.nominal.nominal_speed_rad_per_s)), shown(motor.nominal.winding_limit_C, "degC"),
-            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(kSheetAmbient_C, "degC")));
+    findings.add(level_of_heat(motor), "thermal_resistance_stator_ambient",
+                 LintClause{LintWords::heat_without_current,
+                            {shown_speed(plain(motor.nominal.nominal_speed_rad_per_s)), shown(motor.nominal.winding_limit_C, "degC"),
+                             shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(kSheetAmbient_C, "degC")}});
     return;
   }
   const double ratio = heat->equivalent_current_A / heat->limit_current_A;
   const bool is_impossible = kHeat.excludes(ratio);
   if (is_impossible || (kUsualHeat.excludes(ratio) && level_of_heat(motor) == LintFinding::Level::error)) {
-    findings.add(
-        is_impossible ? level_of_heat(motor) : LintFinding::Level::warning, "nominal_torque",
-        fmt::format(
-            "the nominal torque {} and the drag take {}, {} times the {} that bring the winding to {} at 25 °C ambient, expected {}; check "
-            "thermal resistances, winding limit, resistance and nominal point",
-            shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(heat->equivalent_current_A, "A"), base::significant(ratio, 3),
-            shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC"),
-            is_impossible ? "0.85 to 1.1 times" : "0.94 to 1.05 times, as on known sheets"));
+    findings.add(is_impossible ? level_of_heat(motor) : LintFinding::Level::warning, "nominal_torque",
+                 LintClause{LintWords::nominal_heat,
+                            {shown_torque(plain(motor.nominal.nominal_torque_Nm)), shown(heat->equivalent_current_A, "A"),
+                             LintNumber{ratio, 3}, shown(heat->limit_current_A, "A"), shown(motor.nominal.winding_limit_C, "degC"),
+                             LintClause{is_impossible ? LintWords::possible_heat : LintWords::usual_heat}}});
   }
 }
 
@@ -246,10 +217,8 @@ void copper_limit(const Motor& motor, Findings& findings) {
   if (kCopperLimit.excludes(ratio)) {
     findings.add(
         level_of_heat(motor), "nominal_current",
-        fmt::format(
-            "nominal current {} is {} times the {} that bring the winding to {} by copper loss alone at 25 °C ambient, expected 0.65 to "
-            "1.05 times; check thermal resistances, winding limit and resistance",
-            shown(plain(v.nominal_current_A), "A"), base::significant(ratio, 3), shown(limit_A, "A"), shown(v.winding_limit_C, "degC")));
+        LintClause{LintWords::copper_heat,
+                   {shown(plain(v.nominal_current_A), "A"), LintNumber{ratio, 3}, shown(limit_A, "A"), shown(v.winding_limit_C, "degC")}});
   }
 }
 

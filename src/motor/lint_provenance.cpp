@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "base/quantity.h"
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
 #include "motor/lint_checks.h"
@@ -41,11 +40,7 @@ void sources(const Motor& motor, Findings& findings) {
     // The derivation of an estimate replaces its source.
     const bool is_derived = parameter.origin == base::Origin::estimated && !parameter.derivation.empty();
     if (parameter.source.empty() && !is_derived) {
-      findings.error_at(
-          parameter.at,
-          fmt::format(
-              "{} of {} names no source; expected the ids of the sources of its derivation, or a source that states your own judgement",
-              key, parameter.printed));
+      findings.error_at(parameter.at, LintClause{LintWords::no_source, {key, parameter.printed}});
     }
   });
 }
@@ -58,9 +53,7 @@ void confirmations(const Motor& motor, Findings& findings) {
                          : Bounds{parameter.value - kSame * std::abs(parameter.value), parameter.value + kSame * std::abs(parameter.value)};
     for (const base::Confirmation& other : parameter.confirmed_by) {
       if (bounds.excludes(other.value)) {
-        findings.error_at(parameter.at,
-                          fmt::format("{} is {}, but {} says {}, expected agreement within the tolerance; one of the two is wrong", key,
-                                      parameter.printed, other.source, other.printed));
+        findings.error_at(parameter.at, LintClause{LintWords::confirmation_differs, {key, parameter.printed, other.source, other.printed}});
       }
     }
   });
@@ -72,12 +65,11 @@ void estimates(const Motor& motor, Findings& findings) {
     if (parameter == motor.parameters.end() || parameter->second.origin != base::Origin::estimated) {
       continue;
     }
-    const std::string found = fmt::format("{} is estimated ({})", each.spec.key, shown(parameter->second.value, each.spec.unit));
+    const LintClause found{LintWords::estimated, {each.spec.key, shown(parameter->second.value, each.spec.unit)}};
     if (each.is_thermal) {
-      findings.note(each.spec.key,
-                    found + ": the temperature depends on it, expected a data sheet value; measure it or calibrate before you rely on it");
+      findings.note(each.spec.key, LintClause{LintWords::thermal_estimate, {found}});
     } else if (each.spec.key.starts_with("nominal_")) {
-      findings.note(each.spec.key, found + ": the nominal point depends on it, expected a data sheet value; take it from there");
+      findings.note(each.spec.key, LintClause{LintWords::nominal_estimate, {found}});
     }
   }
 }
@@ -85,9 +77,7 @@ void estimates(const Motor& motor, Findings& findings) {
 void spreads(const Motor& motor, Findings& findings) {
   for (const auto& [key, parameter] : motor.parameters) {
     if (!is_agreed(key) && !parameter.spread) {
-      findings.warning(key, fmt::format("{} of {} has neither tolerance nor range; expected one of the two (see motor_db/README.md). Until "
-                                        "then a default by its origin is assumed",
-                                        key, parameter.printed));
+      findings.warning(key, LintClause{LintWords::no_spread, {key, parameter.printed}});
     }
   }
 }
@@ -96,10 +86,7 @@ void spreads(const Motor& motor, Findings& findings) {
 void exact_values(const Motor& motor, Findings& findings) {
   for_each_parameter(motor, [&](const std::string& key, const base::ParameterValue& parameter) {
     if (is_exact(parameter) && !is_agreed(key)) {
-      findings.error_at(parameter.at,
-                        fmt::format("{} of {} has a tolerance or range of zero, expected the spread of real motors; state that, "
-                                    "or leave tolerance and range out to assume a default by its origin",
-                                    key, parameter.printed));
+      findings.error_at(parameter.at, LintClause{LintWords::zero_spread, {key, parameter.printed}});
     }
   });
 }
@@ -113,30 +100,21 @@ void narrow_values(const Motor& motor, Findings& findings) {
     if (each.is_fitted && parameter.source == kCalibrationSource) {
       continue;
     }
-    const std::string message = fmt::format(
-        "{} of {} ({}) has a spread of -{} to +{} %, expected at least -{} to +{} % for a value of this origin; {}", each.key,
-        parameter.printed, base::to_string(parameter.origin), base::significant(percent(parameter.spread->low), 2),
-        base::significant(percent(parameter.spread->high), 2), base::significant(percent(each.least.low), 2),
-        base::significant(percent(each.least.high), 2),
-        each.is_fitted ? "this spread is assumed" : "state that, or leave tolerance and range out to assume a default by its origin");
-    each.is_fitted ? findings.note_at(parameter.at, message) : findings.error_at(parameter.at, message);
+    const LintClause what{
+        LintWords::narrow_spread,
+        {each.key, parameter.printed, base::to_string(parameter.origin), LintNumber{percent(parameter.spread->low), 2},
+         LintNumber{percent(parameter.spread->high), 2}, LintNumber{percent(each.least.low), 2}, LintNumber{percent(each.least.high), 2},
+         LintClause{each.is_fitted ? LintWords::spread_is_assumed : LintWords::state_spread}}};
+    each.is_fitted ? findings.note_at(parameter.at, what) : findings.error_at(parameter.at, what);
   }
 }
 
 void heat_counted_twice(const Motor& motor, Findings& findings) {
   for (const MotorEffect& effect : motor.effects) {
     if (is_loss_of_every_motor(*effect.type)) {
-      findings.warning_at(effect.parameters.front().at,
-                          fmt::format("effects.{} is a {}, which the file's own parameters already contain, so its heat counts twice; "
-                                      "expected only effects that the network does not have",
-                                      effect.name, effect.type->name));
+      findings.warning_at(effect.parameters.front().at, LintClause{LintWords::loss_counted_twice, {effect.name, effect.type->name}});
     } else if (effect.type->name == "input_power_loss") {
-      findings.warning_at(
-          effect.parameters.front().at,
-          fmt::format("effects.{} is an input_power_loss, which contains the copper loss and the no-load loss of the file's "
-                      "own parameters, so their heat counts twice wherever the current is known; expected it only in a "
-                      "file for logs without a current",
-                      effect.name));
+      findings.warning_at(effect.parameters.front().at, LintClause{LintWords::input_power_counted_twice, {effect.name}});
     }
   }
 }

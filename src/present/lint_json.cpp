@@ -13,7 +13,7 @@ Json lint_json(const duty::FilesLint& lint) {
                         {"level", motor::to_string(each.level)},
                         {"check", each.check},
                         {"key", each.key},
-                        {"message", each.message}});
+                        {"message", motor::message_of(each)}});
   }
   return {{"schema", "heatsoak.lint/1"},
           {"files", lint.files},

@@ -1,7 +1,5 @@
 #include "robot/robot_lint.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,12 +13,15 @@
 namespace heatsoak::robot {
 namespace {
 
+using motor::LintClause;
+using motor::LintWords;
+
 motor::LintFinding finding(const Robot& robot, motor::LintFinding::Level level, std::string_view check, std::string_view key,
-                           std::string message) {
-  return {level, std::string(check), std::move(message), input::place_of(robot.file, std::string(key)), std::string(key)};
+                           LintClause what) {
+  return {level, std::string(check), std::move(what), input::place_of(robot.file, std::string(key)), std::string(key)};
 }
 
-std::string in_mm(double length_m) { return fmt::format("{:.0f} mm", 1e3 * length_m); }
+LintClause in_mm(double length_m) { return {LintWords::length, {1e3 * length_m}}; }
 
 /// Returns the smallest angle between the axles of two wheels.
 double closest_axles_rad(const Robot& robot) {
@@ -43,43 +44,40 @@ void check_wheels(const Robot& robot, std::vector<motor::LintFinding>& findings)
   constexpr double kLargestShare = 0.6;
   constexpr double kSameDirection_rad = 1e-3;
   if (closest_axles_rad(robot) < kSameDirection_rad) {
-    findings.push_back(finding(robot, motor::LintFinding::Level::error, "axes", "wheels.axis_angles",
-                               "two wheels have the same angle; expected a different one for each wheel"));
+    findings.push_back(finding(robot, motor::LintFinding::Level::error, "axes", "wheels.axis_angles", LintClause{LintWords::same_angle}));
     return;
   }
   constexpr double kSmallestShare = 0.25;
   if (robot.wheels.radius_m < kSmallestShare * robot.wheels.contact_radius_m) {
     findings.push_back(finding(robot, motor::LintFinding::Level::warning, "wheels", "wheels.contact_radius",
-                               fmt::format("of {} is large for wheels with a radius of {}; expected at most {}. Is {} the diameter?",
-                                           in_mm(robot.wheels.contact_radius_m), in_mm(robot.wheels.radius_m),
-                                           in_mm(robot.wheels.radius_m / kSmallestShare), in_mm(robot.wheels.contact_radius_m))));
+                               LintClause{LintWords::contact_radius_large,
+                                          {in_mm(robot.wheels.contact_radius_m), in_mm(robot.wheels.radius_m),
+                                           in_mm(robot.wheels.radius_m / kSmallestShare), in_mm(robot.wheels.contact_radius_m)}}));
   }
   const bool is_overlap = robot.wheels.radius_m > room_m;
   if (is_overlap || robot.wheels.radius_m > kLargestShare * robot.wheels.contact_radius_m) {
     findings.push_back(
         finding(robot, is_overlap ? motor::LintFinding::Level::error : motor::LintFinding::Level::warning, "wheels", "wheels.radius",
-                fmt::format("wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?",
-                            in_mm(robot.wheels.radius_m), is_overlap ? "overlap" : "are large", in_mm(robot.wheels.contact_radius_m),
-                            in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)), in_mm(robot.wheels.radius_m))));
+                LintClause{LintWords::wheels_too_large,
+                           {in_mm(robot.wheels.radius_m), LintClause{is_overlap ? LintWords::overlap : LintWords::are_large},
+                            in_mm(robot.wheels.contact_radius_m), in_mm(std::min(room_m, kLargestShare * robot.wheels.contact_radius_m)),
+                            in_mm(robot.wheels.radius_m)}}));
   }
 }
 
 void check_battery(const Robot& robot, std::vector<motor::LintFinding>& findings) {
-  const auto add = [&](const char* key, std::string message) {
-    findings.push_back(finding(robot, motor::LintFinding::Level::error, "battery", key, std::move(message)));
+  const auto add = [&](const char* key, LintClause what) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::error, "battery", key, std::move(what)));
   };
   const RobotBattery& battery = robot.battery;
   if (battery.full_V && battery.nominal_V > *battery.full_V) {
-    add("battery.nominal_voltage", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected a value between empty and full",
-                                               battery.nominal_V, *battery.full_V));
+    add("battery.nominal_voltage", LintClause{LintWords::nominal_above_full, {battery.nominal_V, *battery.full_V}});
   }
   if (battery.empty_V && battery.nominal_V < *battery.empty_V) {
-    add("battery.nominal_voltage",
-        fmt::format("{:.4g} V is less than the empty battery's {:.4g} V; expected a value between empty and full", battery.nominal_V,
-                    *battery.empty_V));
+    add("battery.nominal_voltage", LintClause{LintWords::nominal_below_empty, {battery.nominal_V, *battery.empty_V}});
   }
   if (battery.empty_V && battery.full_V && *battery.empty_V >= *battery.full_V) {
-    add("battery.empty_voltage", fmt::format("{:.4g} V is not less than the full battery's {:.4g} V", *battery.empty_V, *battery.full_V));
+    add("battery.empty_voltage", LintClause{LintWords::empty_above_full, {*battery.empty_V, *battery.full_V}});
   }
 }
 
@@ -89,31 +87,25 @@ void check_voltage(const Robot& robot, std::vector<motor::LintFinding>& findings
   constexpr double kMost_V = 60.0;
   if (robot.battery.nominal_V > kMost_V) {
     findings.push_back(finding(robot, motor::LintFinding::Level::warning, "battery", "battery.nominal_voltage",
-                               fmt::format("{:.4g} V is more than the battery of a small robot has; expected at most {:.0f} V. Six LiPo "
-                                           "cells have 22.2 V",
-                                           robot.battery.nominal_V, kMost_V)));
+                               LintClause{LintWords::voltage_above_small_robots, {robot.battery.nominal_V, kMost_V}}));
   }
 }
 
 void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) {
-  const auto add = [&](const char* key, std::string message) {
-    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "drive", key, std::move(message)));
+  const auto add = [&](const char* key, LintClause what) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "drive", key, std::move(what)));
   };
   if (std::isfinite(robot.drive.voltage_limit_V) && robot.battery.full_V && robot.drive.voltage_limit_V > 1.1 * *robot.battery.full_V) {
-    add("drive.voltage_limit", fmt::format("{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit",
-                                           robot.drive.voltage_limit_V, *robot.battery.full_V));
+    add("drive.voltage_limit", LintClause{LintWords::voltage_limit_above_full, {robot.drive.voltage_limit_V, *robot.battery.full_V}});
   }
   // Known robots have ratios of 1 to 5.
   constexpr double kSmallestRatio = 0.5;
   if (robot.drive.gear_ratio < kSmallestRatio) {
-    add("drive.gear_ratio", fmt::format("{:.4g} motor turns per wheel turn; expected at least {}: a motor that turns 3.6 times as fast as "
-                                        "the wheel has \"3.6\"",
-                                        robot.drive.gear_ratio, kSmallestRatio));
+    add("drive.gear_ratio", LintClause{LintWords::gear_ratio_small, {robot.drive.gear_ratio, kSmallestRatio}});
   }
   constexpr double kLargestRatio = 30.0;
   if (robot.drive.gear_ratio > kLargestRatio) {
-    add("drive.gear_ratio", fmt::format("{:.4g} motor turns per wheel turn; expected at most {:.0f}: 3.6 to 1 is \"3.6\"",
-                                        robot.drive.gear_ratio, kLargestRatio));
+    add("drive.gear_ratio", LintClause{LintWords::gear_ratio_large, {robot.drive.gear_ratio, kLargestRatio}});
   }
 }
 
@@ -127,61 +119,55 @@ void check_inertia(const Robot& robot, std::vector<motor::LintFinding>& findings
   const double share = *robot.body.yaw_inertia_kg_m2 / (robot.mass_kg * robot.wheels.contact_radius_m * robot.wheels.contact_radius_m);
   if (share < kLeast || share > kMost) {
     findings.push_back(finding(robot, motor::LintFinding::Level::warning, "inertia", "body.yaw_inertia",
-                               fmt::format("is {:.3g} times mass times contact radius squared; expected {} to {} times. Check the "
-                                           "unit (1 kg m2 is 10 000 000 g cm2), mass and wheels.contact_radius",
-                                           share, kLeast, kMost)));
+                               LintClause{LintWords::yaw_inertia, {share, kLeast, kMost}}));
   }
 }
 
 /// Values that are possible, but far from those of small robots, and so probably in another unit.
 void check_motion(const Robot& robot, std::vector<motor::LintFinding>& findings) {
-  const auto add = [&](const char* key, std::string message) {
-    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "motion", key, std::move(message)));
+  const auto add = [&](const char* key, LintClause what) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "motion", key, std::move(what)));
   };
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   if (std::ranges::any_of(robot.wheels.axis_rad, [](double each_rad) { return std::abs(each_rad) > kFullTurn_rad; })) {
-    add("wheels.axis_angles", "an angle is more than a full turn; check the unit, deg or rad");
+    add("wheels.axis_angles", LintClause{LintWords::angle_above_turn});
   }
   // A solid disc has 0.5 of mass times radius squared; a wheel of an omni robot weighs less than a tenth of the robot.
   constexpr double kLargestInertia_share = 0.05;
   const double own_kg_m2 = robot.mass_kg * robot.wheels.radius_m * robot.wheels.radius_m;
   if (robot.wheels.inertia_kg_m2 && *robot.wheels.inertia_kg_m2 > kLargestInertia_share * own_kg_m2) {
-    add("wheels.inertia", fmt::format("is {:.3g} times the robot's mass times wheel radius squared; expected at most {}. Check the unit: "
-                                      "1 kg cm2 is 1000 g cm2",
-                                      *robot.wheels.inertia_kg_m2 / own_kg_m2, kLargestInertia_share));
+    add("wheels.inertia", LintClause{LintWords::wheel_inertia, {*robot.wheels.inertia_kg_m2 / own_kg_m2, kLargestInertia_share}});
   }
   if (robot.body.center_of_gravity_height_m && *robot.body.center_of_gravity_height_m > 3.0 * robot.wheels.contact_radius_m) {
-    add("body.center_of_gravity_height", fmt::format("{} is more than three times the contact radius of {}; check the unit, mm or cm",
-                                                     in_mm(*robot.body.center_of_gravity_height_m), in_mm(robot.wheels.contact_radius_m)));
+    add("body.center_of_gravity_height", LintClause{LintWords::center_of_gravity_high,
+                                                    {in_mm(*robot.body.center_of_gravity_height_m), in_mm(robot.wheels.contact_radius_m)}});
   }
   // Wheels that resist with a fifth of the weight on them would not roll; known robots lose 1 to 3 % of it.
   constexpr double kLargestFriction_share = 0.2;
   const double weight_Nm = robot.mass_kg * kGravity_m_per_s2 * robot.wheels.radius_m / static_cast<double>(robot.wheels.axis_rad.size());
   if (robot.friction.wheel_torque_Nm && *robot.friction.wheel_torque_Nm > kLargestFriction_share * weight_Nm) {
     add("friction.wheel_torque",
-        fmt::format("{:.3g} mN m is {:.2g} times the weight on a wheel times its radius; expected at most {} "
-                    "times. Check the unit: mN m or N m",
-                    1e3 * *robot.friction.wheel_torque_Nm, *robot.friction.wheel_torque_Nm / weight_Nm, kLargestFriction_share));
+        LintClause{LintWords::wheel_torque_large,
+                   {1e3 * *robot.friction.wheel_torque_Nm, *robot.friction.wheel_torque_Nm / weight_Nm, kLargestFriction_share}});
   }
   constexpr double kFastest_m_per_s = 10.0;
   if (robot.limits.speed_m_per_s && *robot.limits.speed_m_per_s > kFastest_m_per_s) {
-    add("limits.speed", fmt::format("{:.3g} m/s is more than small robots reach; expected at most {:.0f} m/s", *robot.limits.speed_m_per_s,
-                                    kFastest_m_per_s));
+    add("limits.speed", LintClause{LintWords::speed_large, {*robot.limits.speed_m_per_s, kFastest_m_per_s}});
   }
   // A planner that needs seconds for its acceleration never reaches it on a field of 12 m.
   constexpr double kSlowest_s = 2.0;
   if (robot.limits.jerk_m_per_s3 && robot.limits.acceleration_m_per_s2 &&
       *robot.limits.acceleration_m_per_s2 > kSlowest_s * *robot.limits.jerk_m_per_s3) {
-    add("limits.jerk", fmt::format("{:.3g} m/s3 reaches the acceleration of {:.3g} m/s2 only after {:.1f} s; expected at most {:.0f} s",
-                                   *robot.limits.jerk_m_per_s3, *robot.limits.acceleration_m_per_s2,
-                                   *robot.limits.acceleration_m_per_s2 / *robot.limits.jerk_m_per_s3, kSlowest_s));
+    add("limits.jerk", LintClause{LintWords::jerk_small,
+                                  {*robot.limits.jerk_m_per_s3, *robot.limits.acceleration_m_per_s2,
+                                   *robot.limits.acceleration_m_per_s2 / *robot.limits.jerk_m_per_s3, kSlowest_s}});
   }
   // Grip limits wheels on carpet to about 10 m/s2.
   constexpr double kMost_m_per_s2 = 30.0;
   for (const auto& [key, value] :
        {std::pair{"limits.acceleration", robot.limits.acceleration_m_per_s2}, std::pair{"limits.braking", robot.limits.braking_m_per_s2}}) {
     if (value && *value > kMost_m_per_s2) {
-      add(key, fmt::format("{:.3g} m/s2 is more than the grip of wheels allows; expected at most {:.0f} m/s2", *value, kMost_m_per_s2));
+      add(key, LintClause{LintWords::acceleration_large, {*value, kMost_m_per_s2}});
     }
   }
 }
@@ -203,7 +189,7 @@ void require_sound(const Robot& robot) {
   base::Diagnostics diagnostics;
   for (const motor::LintFinding& each : implausible_values(robot)) {
     if (each.level == motor::LintFinding::Level::error) {
-      diagnostics.add(each.at, each.key, each.message);
+      diagnostics.add(each.at, each.key, motor::message_of(each));
     }
   }
   diagnostics.throw_if_any();
@@ -218,13 +204,13 @@ Robot read_sound_robot(const std::filesystem::path& path) {
 namespace {
 
 /// Adds notes about the values of these tables that the robot lacks; `why` follows each.
-void add_lacking(const Robot& robot, std::span<const std::string_view> tables, std::string_view why,
-                 std::vector<motor::LintFinding>& findings) {
+void add_lacking(const Robot& robot, std::span<const std::string_view> tables, LintWords why, std::vector<motor::LintFinding>& findings) {
   try {
     require_parameters(robot, tables);
   } catch (const base::Failure& failure) {
     for (const base::Diagnostic& each : failure.diagnostics()) {
-      findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", each.key, fmt::format("{}{}", each.message, why)));
+      findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", each.key,
+                                 LintClause{LintWords::missing_value, {each.message, LintClause{why}}}));
     }
   }
 }
@@ -234,20 +220,18 @@ void add_missing_values(const Robot& robot, std::vector<motor::LintFinding>& fin
   constexpr std::array<std::string_view, 4> kMatch{"body", "wheels", "traction", "limits"};
   constexpr std::array<std::string_view, 2> kClosedLoop{"drive", "battery"};
   constexpr std::array<std::string_view, 1> kFriction{"friction"};
-  constexpr std::string_view kMatchNeedsIt = "; a match needs it, a prescribed duty does not";
   if (std::ranges::any_of(robot.parameters, [](const auto& each) { return each.first.starts_with("body."); })) {
     motor::MotorValues any;
     any.rotor_inertia_kg_m2 = 0.0;
     make_body(with_assumed_friction(robot), any);
   }
-  add_lacking(robot, kMatch, kMatchNeedsIt, findings);
+  add_lacking(robot, kMatch, LintWords::match_needs_it, findings);
   if (has_friction(robot)) {
-    add_lacking(robot, kFriction, kMatchNeedsIt, findings);
+    add_lacking(robot, kFriction, LintWords::match_needs_it, findings);
   } else {
-    findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", "friction",
-                               "is missing; a match assumes it. `heatsoak friction` measures it from a log"));
+    findings.push_back(finding(robot, motor::LintFinding::Level::note, "motion", "friction", LintClause{LintWords::friction_missing}));
   }
-  add_lacking(robot, kClosedLoop, kClosedLoopNeedsIt, findings);
+  add_lacking(robot, kClosedLoop, LintWords::closed_loop_needs_it, findings);
 }
 
 }  // namespace
@@ -257,7 +241,7 @@ std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::st
   if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
     findings.push_back(
         finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor",
-                fmt::format("there is no motor '{}'{}", robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors))));
+                LintClause{LintWords::unknown_motor, {robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors)}}));
   }
   std::ranges::move(implausible_values(robot), std::back_inserter(findings));
   add_missing_values(robot, findings);

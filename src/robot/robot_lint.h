@@ -15,10 +15,6 @@ namespace heatsoak::robot {
 /// robot cannot exist, a warning that a value probably has another unit.
 std::vector<motor::LintFinding> implausible_values(const Robot& robot);
 
-/// Follows a missing value that only a match in closed loop needs.
-inline constexpr std::string_view kClosedLoopNeedsIt =
-    "; a match in closed loop needs it (`simulate`, `evaluate --closed-loop`, `generate core`)";
-
 /// Throws Failure (bad_input) with the errors of implausible_values(): no verdict and no firmware may rest on them.
 void require_sound(const Robot& robot);
 

@@ -25,8 +25,8 @@ struct RestOfHotMotor {
 };
 
 /// Returns the rests for kPlays_s, in whole seconds. The hot motor stood still with the current that holds its first node at the limit in
-/// steady state; it rests without current. Play begins at places of the duty that are a minute apart, at most 16, and repeats the duty if
-/// it ends. Returns nothing if no current brings the motor to a limit.
+/// steady state; it rests without current. Play begins at places of the duty that are a minute or more apart, at most 16, and repeats the
+/// duty if it ends. Returns nothing if no current brings the motor to a limit.
 std::vector<RestOfHotMotor> rests_of_hot_motor(const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& demand,
                                                const motor::Motor& motor);
 

@@ -39,7 +39,7 @@ std::set<std::string> errors(const Motor& motor) { return checks_with(LintFindin
 std::string said_by(const std::string& check, const Motor& motor) {
   std::string messages;
   for (const LintFinding& finding : lint(motor)) {
-    messages += finding.check == check ? finding.message + "\n" : "";
+    messages += finding.check == check ? message_of(finding) + "\n" : "";
   }
   return messages;
 }
@@ -62,7 +62,7 @@ class MotorOfDatabase : public testing::TestWithParam<std::string> {};
 TEST_P(MotorOfDatabase, has_no_contradiction) {
   for (const LintFinding& finding : lint(motor_of_database(GetParam()))) {
     EXPECT_EQ(finding.level, LintFinding::Level::note)
-        << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << finding.message;
+        << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << message_of(finding);
   }
 }
 
@@ -238,7 +238,7 @@ TEST(WrongValues, are_found_at_their_line) {
   ASSERT_NE(density, findings.end());
   EXPECT_THAT(density->at.file, HasSubstr("lint_df45l_wiki.toml"));
   EXPECT_EQ(density->at.line, wrong_motor("df45l_wiki").parameters.at("mass").at.line);
-  EXPECT_THAT(density->message, HasSubstr("320 g"));
+  EXPECT_THAT(message_of(*density), HasSubstr("320 g"));
 }
 
 // One wrong value in a good data sheet (EC 45 flat, 70 W, 24 V) must trigger exactly the checks that involve it.
