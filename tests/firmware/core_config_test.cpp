@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/diagnostic.h"
+#include "firmware/core_files.h"
 #include "motor/datasheet_network.h"
 #include "robot/inverse_dynamics.h"
 #include "support/shipped.h"
@@ -171,6 +172,28 @@ const derate::Derating& derating() {
     return derate::derate(ecx_32(), twente(), options);
   }();
   return made;
+}
+
+TEST(CoreConfig, OriginOfTheSlipFactorsStandsInTheHeader) {
+  robot::Robot robot = twente();
+  const motor::Motor motor = ecx_32();
+  const auto header = [&] {
+    return core_config_header({.robot = robot,
+                               .motor = motor,
+                               .derating = derating(),
+                               .options = {},
+                               .config = make_core_config(robot, motor.nominal, with_tolerance({}, motor)),
+                               .guard = {},
+                               .version = {},
+                               .options_text = {},
+                               .hash = {}});
+  };
+  robot.wheels.slip_factor = {1.01, 1.02, 1.03, 1.04};
+  EXPECT_THAT(header(), testing::Not(testing::HasSubstr("wheels.slip_factors (")));
+  base::ParameterValue stated;
+  stated.origin = base::Origin::measured;
+  robot.parameters.emplace("wheels.slip_factors[0]", stated);
+  EXPECT_THAT(header(), testing::HasSubstr("robot file: wheels.slip_factors (measured)"));
 }
 
 TEST(GuardedCoreConfig, StartsTheCoreAndCarriesTheGuard) {

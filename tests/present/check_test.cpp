@@ -55,8 +55,8 @@ TEST_F(CheckAnswer, fits_the_terminal) {
 TEST_F(CheckAnswer, says_what_failed_and_why) {
   const std::string text = terminal_text(check_document(outcomes_, false), {.width = 80});
   EXPECT_TRUE(text.starts_with("1 limit of 3 does not hold; 1 limit of 3 cannot be evaluated")) << text;
-  for (const char* said : {"ok    winding_peak_p95", "FAIL  current_margin", "ERROR  derating_excess", "/repository/robot.toml:10:5: 0.5 A is below",
-                           "guard.h:3:1: has no table"}) {
+  for (const char* said : {"ok    winding_peak_p95", "FAIL  current_margin", "ERROR  derating_excess",
+                           "/repository/robot.toml:10:5: 0.5 A is below", "guard.h:3:1: has no table"}) {
     EXPECT_THAT(text, HasSubstr(said));
   }
 }

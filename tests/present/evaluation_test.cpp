@@ -201,6 +201,26 @@ TEST(EvaluationDocument, a_closed_loop_states_the_difference_of_a_motor_whose_cu
     return each.severity == Severity::warning && each.words.find("202 °C") != std::string::npos &&
            each.words.find("450 °C") != std::string::npos;
   }));
+  for (const Note& each : document.notes) {
+    EXPECT_THAT(each.words, Not(HasSubstr("--closed-loop"))) << "advice that was followed already";
+  }
+}
+
+TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
+  select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
+  motor.motor_id = "m";
+  simulate::EvaluationAnswer answer = answer_with({motor});
+  answer.rests["m"] = {{.play_s = 60.0, .half_s = 0.0, .all_s = 13.0, .starts = 4, .starts_never = 0},
+                       {.play_s = 300.0, .half_s = {}, .all_s = {}, .starts = 4, .starts_never = 3}};
+  answer.rests["other"] = answer.rests["m"];
+  std::vector<std::string> rests;
+  for (const Note& each : evaluation_document(answer).notes) {
+    if (each.words.starts_with("Rest of a hot")) {
+      EXPECT_EQ(each.severity, Severity::background);
+      rests.push_back(each.words);
+    }
+  }
+  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("(never from 3 of 4 places"))));
 }
 
 TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {
