@@ -239,8 +239,25 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   return finished(config);
 }
 
+namespace {
+
+/// A guard gets the temperature of the hottest body of the other wheels' guards, which can be far below their windings.
+void require_neighbours_at_bodies(const motor::Motor& motor) {
+  for (const motor::MotorEffect& effect : motor.effects) {
+    if (effect.type->name == "neighbour_coupling" && effect.nodes.front() == "winding") {
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("{}: effects.{} couples the winding with that of the neighbour; expected node = \"stator\" or another "
+                                      "body, because the guard of the drive core does not use the windings of its neighbours",
+                                      motor.id, effect.name));
+    }
+  }
+}
+
+}  // namespace
+
 robot_core::Config make_core_config(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
                                     const derate::Derating& derating, const HostGuard& guard) {
+  require_neighbours_at_bodies(motor);
   CoreOptions with_cold = with_tolerance(options, motor);
   with_cold.coldest_ambient_C = derating.options.coldest_ambient_C;
   const double periods = derating.options.period_s / options.period_s;

@@ -333,6 +333,17 @@ TEST(GenerateCore, TellsWhatTheCoreDoesNotKnow) {
   EXPECT_THAT(content_of(folder.path() / "core/README.md"), HasSubstr("my_vehicle_airflow"));
 }
 
+TEST(GenerateCore, RefusesAWindingThatIsCoupledToItsNeighbours) {
+  const TemporaryFolder folder;
+  std::string coupled = typical("neighbour_coupling");
+  coupled.replace(coupled.find("\"stator\""), 8, "\"winding\"");
+  write_motor_with(folder.path() / "coupled.toml", {coupled});
+  const ProgramRun done = run(generate((folder.path() / "coupled.toml").string(), folder.path() / "core"));
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, AllOf(HasSubstr("effects.my_neighbour_coupling"), HasSubstr("expected node = \"stator\"")));
+  EXPECT_FALSE(fs::exists(folder.path() / "core"));
+}
+
 TEST(GenerateCore, CurveOverAColumnCountsAtItsHottest) {
   const TemporaryFolder folder;
   std::string curve = typical("tabulated");
