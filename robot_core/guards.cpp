@@ -77,6 +77,7 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   }
   const float rms_A = square_root(square_A2);
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
+  static_assert(kGuardSignals == 7, "a further signal needs its value here");
   float signal[kGuardSignals];
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
   // Without a speed the current is the limp current, which is safe at every speed.

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "derate/power_off.h"
@@ -11,13 +14,26 @@
 namespace heatsoak::firmware {
 namespace {
 
-static_assert(robot_core::kGuardSignals == int{derate::observed::kSignalCount});
-static_assert(robot_core::guard_current_A == int{derate::observed::current} &&
-              robot_core::guard_speed_rad_per_s == int{derate::observed::speed} &&
-              robot_core::guard_ambient_C == int{derate::observed::ambient} &&
-              robot_core::guard_vehicle_speed_m_per_s == int{derate::observed::vehicle_speed} &&
-              robot_core::guard_neighbour_C == int{derate::observed::neighbour} && robot_core::guard_age_h == int{derate::observed::age} &&
-              robot_core::guard_acceleration_rad_per_s2 == int{derate::observed::acceleration});
+/// Inputs of the drive core in the order of the observer.
+constexpr std::array kInputs{
+    std::pair{robot_core::guard_current_A, derate::observed::current},
+    std::pair{robot_core::guard_speed_rad_per_s, derate::observed::speed},
+    std::pair{robot_core::guard_ambient_C, derate::observed::ambient},
+    std::pair{robot_core::guard_vehicle_speed_m_per_s, derate::observed::vehicle_speed},
+    std::pair{robot_core::guard_neighbour_C, derate::observed::neighbour},
+    std::pair{robot_core::guard_age_h, derate::observed::age},
+    std::pair{robot_core::guard_acceleration_rad_per_s2, derate::observed::acceleration},
+};
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kInputs.size(); ++i) {
+        if (static_cast<std::size_t>(kInputs[i].first) != i || static_cast<std::size_t>(kInputs[i].second) != i) {
+          return false;
+        }
+      }
+      return kInputs.size() == derate::observed::kSignalCount && kInputs.size() == std::size_t{robot_core::kGuardSignals};
+    }(),
+    "each input of the firmware needs an index in robot_core/thermal_guard.h and a pair here");
 
 std::vector<float> single(const std::vector<double>& values) {
   std::vector<float> rounded(values.size());

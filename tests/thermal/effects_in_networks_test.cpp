@@ -192,6 +192,7 @@ TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
       {Signal::vehicle_speed, [](At& at) { at.vehicle_speed_m_per_s = 4.7; }},
       {Signal::neighbour_temperature, [](At& at) { at.neighbour_C = 64.7; }},
       {Signal::age, [](At& at) { at.age_h = 4.7; }}};
+  ASSERT_EQ(changes.size(), kSignalCount) << "every signal needs a change here";
   At before;
   before.current_rms_A = before.copper_loss_W = before.speed_mean_rad_per_s = before.speed_rms_rad_per_s = 2.2;
   before.velocity_rad_per_s = before.acceleration_rad_per_s2 = before.shaft_power_W = before.input_power_W = 2.2;

@@ -292,6 +292,7 @@ TEST_P(EveryCandidate, books_heat_in_proportion_to_its_size) {
 /// At typical size and in a typical state the heat must be plausible for a motor of about 50 W.
 TEST_P(EveryCandidate, of_typical_size_books_watts) {
   for (const std::vector<double>& variant : type().candidacy.variants) {
+    static_assert(kSignalCount == 9, "a further signal needs its usual value here");
     OperatingPoint<double> at{.current_rms_A = 5.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0};
     at.shaft_power_W = 50.0;
     at.input_power_W = 65.0;

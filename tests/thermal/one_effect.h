@@ -54,6 +54,7 @@ inline std::vector<double> random_parameters(Chance& chance, const EffectType& t
 
 /// Draws an operating point from all permitted ranges, with a consistent `copper_loss_W`.
 inline OperatingPoint<double> random_point(Chance& chance) {
+  static_assert(kQuantityCount == 20, "a further quantity needs its range here");
   OperatingPoint<double> at;
   at.current_rms_A = chance.between(0.0, 100.0);
   at.speed_mean_rad_per_s = chance.between(0.0, 2000.0);
