@@ -83,6 +83,10 @@ std::vector<double> by_ratio(double first, double last, int count) {
   return values;
 }
 
+constexpr const thermal::OperatingQuantity<double>& quantity_of(std::size_t signal) {
+  return thermal::kQuantities<double>[observed::kRows[signal]];
+}
+
 /// Range of a signal whose worst case is searched.
 struct Scan {
   observed::Signal signal;
@@ -98,7 +102,7 @@ constexpr std::array kScans{
 /// Returns whether every signal whose worst case is searched has one range, and no other signal has one.
 constexpr bool has_every_scan() {
   for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
-    const bool is_searched = thermal::kQuantities<double>[observed::kRows[signal]].firmware->worst == thermal::WorstCase::searched;
+    const bool is_searched = quantity_of(signal).firmware->worst == thermal::WorstCase::searched;
     const auto ranges = std::ranges::count(kScans, static_cast<observed::Signal>(signal), &Scan::signal);
     if (ranges != (is_searched ? 1 : 0)) {
       return false;
@@ -107,6 +111,21 @@ constexpr bool has_every_scan() {
   return true;
 }
 static_assert(has_every_scan(), "each input of the firmware with WorstCase::searched needs a range here");
+
+/// A temperature of the surroundings. Its neutral value is that of the air, not 0.
+constexpr bool is_temperature(std::size_t signal) { return quantity_of(signal).unit == "degC"; }
+
+/// Returns whether current and speed alone act in both directions: they are the axes of the table and the arguments of HotCase::signals().
+constexpr bool are_axes_alone_signed() {
+  for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
+    const bool is_axis = signal == observed::current || signal == observed::speed;
+    if ((quantity_of(signal).firmware->worst == thermal::WorstCase::both_directions) != is_axis) {
+      return false;
+    }
+  }
+  return true;
+}
+static_assert(are_axes_alone_signed(), "a further signed input needs its largest value here and in operating_point()");
 
 struct Hottest {
   double for_winding = 0.0;
@@ -172,8 +191,8 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   ranges[observed::current] = {-rules.most_current_A, rules.most_current_A};
   ranges[observed::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
   for (const Scan& scan : kScans) {
-    // A neighbour has any temperature that a node may have.
-    if (scan.signal != observed::neighbour) {
+    // A body in the surroundings has any temperature that a node may have.
+    if (!is_temperature(scan.signal)) {
       const std::vector<double> values = scan.values(rules);
       ranges[scan.signal] = {values.front(), values.back()};
     }
@@ -232,7 +251,9 @@ std::vector<double> without_needless(const std::vector<double>& values, const Ob
 
 HotCase plain_case(const BarrierRules& rules) {
   HotCase plain;
-  plain.held[observed::neighbour] = rules.hottest_ambient_C;
+  for (const Scan& scan : kScans) {
+    plain.held[scan.signal] = is_temperature(scan.signal) ? rules.hottest_ambient_C : 0.0;
+  }
   return plain;
 }
 

@@ -17,7 +17,7 @@ std::span<const SignalSpec> signals() {
     std::array<SignalSpec, kSignalCount> all{};
     for (std::size_t i = 0; i < kSignalCount; ++i) {
       const thermal::FirmwareInput& input = thermal::kQuantities<double>[kRows[i]].firmware.value();
-      all[i] = {input.field, input.meaning, input.worst, {}};
+      all[i] = {input.field, input.meaning, input.worst, input.without_power, {}};
       if (input.worst != thermal::WorstCase::both_directions) {
         all[i].row = kRows[i];
       }
@@ -39,10 +39,9 @@ thermal::OperatingPoint<S> operating_point(const motor::MotorValues& motor, cons
   thermal::OperatingPoint<S> at = robot::machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (const std::optional<std::size_t> row = observed::signals()[i].row) {
-      at.*thermal::kQuantities<S>[*row].value = signals[i];
+      thermal::set_quantity(at, *row, signals[i]);
     }
   }
-  at.known = thermal::kNeighbour;
   at.bus_V = robot.battery.full_V.value_or(robot.battery.nominal_V);
   return at;
 }

@@ -38,6 +38,7 @@ struct SignalSpec {
   std::string_view name;     ///< field name in generated code
   std::string_view meaning;  ///< description with sign convention
   thermal::WorstCase worst;
+  thermal::WithoutPower without_power;
   std::optional<std::size_t> row = {};  ///< row of kQuantities that it sets; current and speed set several
 };
 std::span<const SignalSpec> signals();

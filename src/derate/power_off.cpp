@@ -28,10 +28,22 @@ bool bounds_all_later(const thermal::RateFunction& rates, std::span<const double
 
 std::array<double, observed::kSignalCount> signals_without_power(const Derating& derating) {
   std::array<double, observed::kSignalCount> signals{};
-  signals[observed::ambient] = derating.rules.hottest_ambient_C;
-  signals[observed::neighbour] = derating.rules.limits.winding_C;
-  if (const PlausibleRange age = plausible_range(derating, observed::age); age.is_used) {
-    signals[observed::age] = std::ranges::max(age.values);
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    switch (observed::signals()[i].without_power) {
+      case thermal::WithoutPower::zero:
+        break;
+      case thermal::WithoutPower::hottest_air:
+        signals[i] = derating.rules.hottest_ambient_C;
+        break;
+      case thermal::WithoutPower::winding_limit:
+        signals[i] = derating.rules.limits.winding_C;
+        break;
+      case thermal::WithoutPower::largest:
+        if (const PlausibleRange range = plausible_range(derating, static_cast<observed::Signal>(i)); range.is_used) {
+          signals[i] = std::ranges::max(range.values);
+        }
+        break;
+    }
   }
   return signals;
 }

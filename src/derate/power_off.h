@@ -9,8 +9,8 @@
 
 namespace heatsoak::derate {
 
-/// Inputs of the observer without power, in the order of observed::Signal: no current, speed or airflow, the hottest air, a neighbour at the
-/// winding limit and the highest age.
+/// Inputs of the observer without power, in the order of observed::Signal, by FirmwareInput::without_power: no current, speed or airflow, the
+/// hottest air, a neighbour at the winding limit and the highest age.
 std::array<double, observed::kSignalCount> signals_without_power(const Derating& derating);
 
 /// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. They bound

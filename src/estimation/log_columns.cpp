@@ -102,8 +102,8 @@ void set_columns(MeasuredRun& run, std::span<const std::string> keys) {
     const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
     const bool is_known = values.size() > 0 && !std::isnan(values[0]);
     const auto set = [&](thermal::OperatingPoint<double>& at, Eigen::Index k) {
-      at.*thermal::kColumns<double>[place] = is_known ? values[k] : 0.0;
-      at.known = is_known ? at.known | thermal::column_bit(place) : at.known & ~thermal::column_bit(place);
+      thermal::set_quantity(at, thermal::column_row(place), is_known ? values[k] : 0.0);
+      at.known = is_known ? at.known : at.known & ~thermal::column_bit(place);
     };
     for (std::size_t k = 0; k < run.at.size(); ++k) {
       set(run.at[k], static_cast<Eigen::Index>(k));

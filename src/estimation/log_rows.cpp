@@ -77,7 +77,6 @@ LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions
       torque_Nm_(values("torque_Nm", recording)),
       bus_V_(values("bus_V", recording)),
       modulation_(values(column_of(thermal::Signal::modulation), recording)),
-      neighbour_C_(values("neighbour_C", recording)),
       surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
       is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
       is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
@@ -93,9 +92,11 @@ thermal::OperatingPoint<double> LogRows::at(std::size_t row) const {
   const double speed_rad_per_s = of(speed_rad_per_s_, row);
   thermal::OperatingPoint<double> at;
   for (std::size_t i = 0; i < thermal::kQuantityCount; ++i) {
-    if (const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i]; columns_[i] != nullptr) {
-      const double value = of(columns_[i], row);
-      at.*each.value = each.from == thermal::FromColumn::magnitude ? std::abs(value) : value;
+    const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i];
+    const double value = of(columns_[i], row);
+    // An optional quantity without a value in this row stays unknown.
+    if (columns_[i] != nullptr && !(each.is_optional && std::isnan(value))) {
+      thermal::set_quantity(at, i, each.from == thermal::FromColumn::magnitude ? std::abs(value) : value);
     }
   }
   const bool has_torque_only = !current_A_ && torque_Nm_ && options_.torque.per_current_Nm_per_A > 0.0;
@@ -109,10 +110,6 @@ thermal::OperatingPoint<double> LogRows::at(std::size_t row) const {
   at.shaft_power_W = torque_Nm_ ? of(torque_Nm_, row) * speed_rad_per_s : power_of_current_W(of(current_A_, row), speed_rad_per_s);
   at.modulation_ratio =
       modulation_ ? std::abs(of(modulation_, row)) : modulation_of_current(of(current_A_, row), speed_rad_per_s, at.bus_V);
-  if (neighbour_C_ && !std::isnan((*neighbour_C_)[row])) {
-    at.known = thermal::kNeighbour;
-    at.neighbour_C = (*neighbour_C_)[row];
-  }
   at.unlogged_speed_share = is_driven_ && (!speed_rad_per_s_ || std::isnan(speed_rad_per_s)) ? 1.0 : 0.0;
   return at;
 }

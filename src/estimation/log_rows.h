@@ -39,7 +39,7 @@ class LogRows {
   /// Modulation (terminal voltage / supply voltage, at most 1) from back-EMF and resistance. 0 if a constant or a signal is missing.
   [[nodiscard]] double modulation_of_current(double current_A, double speed_rad_per_s, double bus_V) const;
 
-  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_, *neighbour_C_;
+  const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_;
   /// Columns in the order of the table of quantities; null if the log lacks one, or if the quantity is computed.
   std::array<const std::vector<double>*, thermal::kQuantityCount> columns_{};
   std::vector<double> surroundings_C_;

@@ -16,10 +16,11 @@ namespace {
 /// A hot motor under load, with all signals that a law may need.
 thermal::OperatingPoint<double> at_work() {
   thermal::OperatingPoint<double> at;
-  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
-    at.*each.value = each.usual;
+  for (std::size_t row = 0; row < thermal::kQuantityCount; ++row) {
+    if (const std::optional<double> usual = thermal::kQuantities<double>[row].usual) {
+      thermal::set_quantity(at, row, *usual);
+    }
   }
-  at.known = thermal::kNeighbour;
   return at;
 }
 

@@ -97,18 +97,20 @@ struct SimulatedRobot::Heating {
         coupled_node(node_beside_neighbours(network, motor)) {
     static_assert(robot::kMostWheels <= base::kLanes);
     means.ambient_C = thermal::Lanes::Constant(ambient_C);
-    means.known = thermal::kNeighbour;
   }
 
   /// Temperature of each motor's neighbours: mean of the two wheels beside it, at the node that exchanges heat with them. Then the motors
   /// together neither gain nor lose heat by the exchange.
   void find_neighbours(int wheel_count) {
     const thermal::Lanes& node_C = thermal.state_C()[coupled_node];
+    thermal::Lanes neighbour_C = means.neighbour_C;
     for (int i = 0; i < wheel_count; ++i) {
-      means.neighbour_C[i] = 0.5 * (node_C[(i + 1) % wheel_count] + node_C[(i + wheel_count - 1) % wheel_count]);
+      neighbour_C[i] = 0.5 * (node_C[(i + 1) % wheel_count] + node_C[(i + wheel_count - 1) % wheel_count]);
     }
+    thermal::set_quantity(means, kNeighbourRow, neighbour_C);
   }
 
+  static constexpr std::size_t kNeighbourRow = thermal::quantity_row("neighbour_temperature");
   Sums sums;
   thermal::Network network;
   std::vector<thermal::Lanes> parameters;

@@ -9,13 +9,10 @@
 
 namespace heatsoak::thermal {
 
-/// Set of optional quantities, one bit each.
+/// Set of optional quantities: bit `row` stands for that row of kQuantities.
 using Quantities = unsigned;
-inline constexpr Quantities kNeighbour = 1U;
 /// Largest number of log columns that the curves of one motor can use.
 inline constexpr std::size_t kLogColumns = 3;
-/// Returns the bit of a column of the log; `place` is below kLogColumns.
-constexpr Quantities column_bit(std::size_t place) { return 2U << place; }
 
 /// Means over one interval, chosen so that intervals can be merged without changing the heat: I²R uses the RMS current, a loss ∝ |ω| the
 /// mean speed, one ∝ ω² the RMS speed. Products such as |I|·ω² use the product of the means. That is accurate if the interval is short
@@ -48,13 +45,13 @@ struct OperatingPoint {
   S second_column = S(0.0);
   S third_column = S(0.0);
   S copper_loss_W = S(0.0);  ///< copper loss of the network, which its drive stage sets before the laws are evaluated
-  Quantities known = 0;      ///< optional quantities that are known, equal for all samples of Lanes
+  Quantities known = 0;      ///< optional quantities that are known, equal for all samples of Lanes; see set_quantity()
 
   [[nodiscard]] constexpr bool knows(Quantities quantities) const { return (known & quantities) == quantities; }
 };
 
-/// Signals, other than temperatures, that a law may need. A log without one of them holds no evidence about the law. The copper loss is
-/// computed from the current; velocity and acceleration need the speed.
+/// Signals that a law may need besides the temperatures of its nodes and of the surroundings. A log without one of them holds no evidence
+/// about the law. The copper loss is computed from the current; velocity and acceleration need the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
 
 /// Rule for averaging a quantity over time. `rms` averages its square. `limit` marks a quantity that is not averaged.
@@ -74,11 +71,23 @@ enum class WorstCase {
   searched          ///< the values of its range that heat winding and bodies most (derate/hot_cases.cpp)
 };
 
-/// Quantity as an input of the guard in the firmware.
+/// Value of an input that the guard assumes for a motor without power.
+enum class WithoutPower {
+  zero,          ///< the motor is at rest
+  hottest_air,   ///< the hottest declared air
+  winding_limit, ///< the winding limit, for the temperature of another motor
+  largest        ///< the largest of its possible values
+};
+
+/// Quantity as an input of the guard in the firmware. The constructor makes each row state the value without power.
 struct FirmwareInput {
   std::string_view field;    ///< name in generated code
   std::string_view meaning;  ///< description with sign convention
-  WorstCase worst = WorstCase::searched;
+  WithoutPower without_power;
+  WorstCase worst;
+
+  constexpr FirmwareInput(std::string_view field_of, std::string_view meaning_of, WithoutPower assumed, WorstCase worst_of = WorstCase::searched)
+      : field(field_of), meaning(meaning_of), without_power(assumed), worst(worst_of) {}
 };
 
 /// One row of the table of quantities; S as in OperatingPoint.
@@ -87,7 +96,7 @@ struct OperatingQuantity {
   S OperatingPoint<S>::*value;
   std::string_view name;  ///< in messages with spaces: "shaft power"
   std::string_view unit;
-  double usual = 0.0;  ///< value of a hot motor under load, in SI units (°C, h)
+  std::optional<double> usual = {};  ///< value of a hot motor under load, in SI units (°C, h); none: the default
   AveragingRule averaging = AveragingRule::mean;
   bool is_motion = false;  ///< varies with the motion, independently of the torque
   std::optional<Signal> signal = {};
@@ -98,6 +107,7 @@ struct OperatingQuantity {
   std::string_view meaning = {};   ///< description as an input signal
   bool is_range_compared = false;  ///< forecasts beyond the range of the training runs get a warning
   std::optional<FirmwareInput> firmware = {};
+  bool is_optional = false;  ///< valid only if OperatingPoint::known has its bit, because no default is safe, as for a temperature
 };
 
 // clang-format off
@@ -105,31 +115,31 @@ struct OperatingQuantity {
 template <class S, class P = OperatingPoint<S>>
 inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::speed_mean_rad_per_s, "speed", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "speed_rad_per_s", FromColumn::computed, "speed", true, "mean of |ω|", true,
-                         FirmwareInput{"speed_rad_per_s", "speed of the motor's shaft, signed", WorstCase::both_directions}},
+                         FirmwareInput{"speed_rad_per_s", "speed of the motor's shaft, signed", WithoutPower::zero, WorstCase::both_directions}},
     OperatingQuantity<S>{&P::velocity_rad_per_s, "velocity", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "speed ω with its sign"},
     OperatingQuantity<S>{&P::current_rms_A, "current", "A", 5.0, AveragingRule::rms, false, Signal::current, "current_A", FromColumn::computed, "current", true, "rms current", true,
-                         FirmwareInput{"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives", WorstCase::both_directions}},
+                         FirmwareInput{"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives", WithoutPower::zero, WorstCase::both_directions}},
     OperatingQuantity<S>{&P::modulation_ratio, "modulation", "", 0.5, AveragingRule::mean, false, Signal::modulation, "duty_ratio", FromColumn::computed, "modulation", true, "ratio |V_motor|/V_bus"},
     OperatingQuantity<S>{&P::shaft_power_W, "shaft_power", "W", 50.0, AveragingRule::mean, false, Signal::shaft_power, "torque_Nm", FromColumn::computed, "torque and speed", true, "mechanical power; above 0 while the motor drives"},
     OperatingQuantity<S>{&P::input_power_W, "input_power", "W", 80.0, AveragingRule::mean, false, Signal::input_power, "power_in_W", FromColumn::value, "input power", true, "electrical input power", true},
     OperatingQuantity<S>{&P::acceleration_rad_per_s2, "acceleration", "rad/s2", 100.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "mean of |dω/dt|", false,
-                         FirmwareInput{"acceleration_rad_per_s2", "magnitude of dω/dt of the motor's shaft, mean over the period"}},
+                         FirmwareInput{"acceleration_rad_per_s2", "magnitude of dω/dt of the motor's shaft, mean over the period", WithoutPower::zero}},
     OperatingQuantity<S>{&P::bus_V, "bus_voltage", "V", 24.0, AveragingRule::mean, false, Signal::bus_voltage, "bus_V", FromColumn::value, "supply voltage", true, "voltage of the supply"},
     OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude of the vehicle's speed", true,
-                         FirmwareInput{"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known"}},
+                         FirmwareInput{"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known", WithoutPower::zero}},
     OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours", false,
-                         FirmwareInput{"age_h", "operating hours of the motor"}},
-    OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::computed, "temperature of the neighbour", false, "", false,
-                         FirmwareInput{"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known"}},
+                         FirmwareInput{"age_h", "operating hours of the motor", WithoutPower::largest}},
+    OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::value, "temperature of the neighbour", false, "", false,
+                         FirmwareInput{"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known", WithoutPower::winding_limit}, true},
     OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C", FromColumn::computed, "", false, "", false,
-                         FirmwareInput{"ambient_C", "air around the motor; the hottest declared air if it is not measured", WorstCase::hottest_air}},
+                         FirmwareInput{"ambient_C", "air around the motor; the hottest declared air if it is not measured", WithoutPower::hottest_air, WorstCase::hottest_air}},
     OperatingQuantity<S>{&P::speed_rms_rad_per_s, "speed_rms", "rad/s", 300.0, AveragingRule::rms, true, Signal::speed},
     OperatingQuantity<S>{&P::resistive_headroom_V, "resistive_headroom", "V", std::numeric_limits<double>::infinity(), AveragingRule::limit},
     OperatingQuantity<S>{&P::series_resistance_ohm, "series_resistance", "ohm"},
     OperatingQuantity<S>{&P::unlogged_speed_share, "unlogged_speed_share", ""},
-    OperatingQuantity<S>{&P::first_column, "first_column", ""},
-    OperatingQuantity<S>{&P::second_column, "second_column", ""},
-    OperatingQuantity<S>{&P::third_column, "third_column", ""},
+    OperatingQuantity<S>{.value = &P::first_column, .name = "first_column", .unit = "", .is_optional = true},
+    OperatingQuantity<S>{.value = &P::second_column, .name = "second_column", .unit = "", .is_optional = true},
+    OperatingQuantity<S>{.value = &P::third_column, .name = "third_column", .unit = "", .is_optional = true},
     OperatingQuantity<S>{&P::copper_loss_W, "copper_loss", "W", 10.0},
 };
 // clang-format on
@@ -174,11 +184,6 @@ constexpr std::size_t firmware_input_count() {
   return count;
 }
 
-/// Members for the columns of a log.
-template <class S, class P = OperatingPoint<S>>
-inline constexpr std::array kColumns{&P::first_column, &P::second_column, &P::third_column};
-static_assert(kColumns<double>.size() == kLogColumns);
-
 /// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
 constexpr std::size_t quantity_row(std::string_view name) {
   std::size_t row = 0;
@@ -186,6 +191,28 @@ constexpr std::size_t quantity_row(std::string_view name) {
     ++row;
   }
   return row;
+}
+
+/// Returns the bit of a quantity in OperatingPoint::known; 0 if it is not optional.
+constexpr Quantities known_bit(std::size_t row) { return kQuantities<double>[row].is_optional ? Quantities{1} << row : 0; }
+static_assert(kQuantityCount <= std::numeric_limits<Quantities>::digits, "one bit for each row");
+
+inline constexpr Quantities kNeighbour = known_bit(quantity_row("neighbour_temperature"));
+
+/// Row of a column of the log; `place` is below kLogColumns.
+constexpr std::size_t column_row(std::size_t place) {
+  constexpr std::size_t kFirst = quantity_row("first_column");
+  return kFirst + place;
+}
+constexpr Quantities column_bit(std::size_t place) { return known_bit(column_row(place)); }
+static_assert(quantity_row("third_column") == column_row(kLogColumns - 1) && column_bit(0) != 0 && kNeighbour != 0);
+
+/// Sets a quantity of the table and, if it is optional, its bit in `known`. Code that fills an operating point sets each optional quantity
+/// with this function: a law ignores a value without its bit.
+template <class S, class V>
+constexpr void set_quantity(OperatingPoint<S>& at, std::size_t row, const V& value) {
+  at.*kQuantities<S>[row].value = value;
+  at.known |= known_bit(row);
 }
 
 /// Returns the row with the log column of a signal.

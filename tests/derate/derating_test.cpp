@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -220,6 +221,17 @@ exponent = { value = "0.5", origin = "estimated", derivation = "a test" }
 }
 
 // Effects that appear only when braking, with a hot neighbour or with an aged contact must have their own cases.
+/// The observer has every input, so no law may take one as unknown.
+TEST(Derate, ObserverKnowsEveryOptionalInput) {
+  const std::array<double, observed::kSignalCount> signals{1.0, 100.0, 30.0, 1.0, 60.0, 10.0, 5.0};
+  const thermal::OperatingPoint<double> at = operating_point<double>(ecx_32().nominal, twente(), signals);
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    const thermal::Quantities bit = thermal::known_bit(observed::kRows[i]);
+    EXPECT_TRUE(at.knows(bit)) << observed::signals()[i].name;
+  }
+  EXPECT_EQ(at.neighbour_C, 60.0);
+}
+
 TEST(Derate, UsesCoverEveryCaseThatALawDistinguishes) {
   const auto cases_of = [](const std::string& lines) {
     const motor::Motor motor = lines.empty() ? ecx_32() : ecx_32_with(lines);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 #include <string>
 
@@ -84,6 +85,36 @@ TEST(SignalTable, ColumnsThatAreReadDirectlyReachTheOperatingPoint) {
     const LogRows rows(log, options);
     EXPECT_EQ(rows.at(0).*each.value, each.from == thermal::FromColumn::magnitude ? 3.0 : -3.0) << each.name;
     EXPECT_EQ(rows.at(1).*each.value, 4.0) << each.name;
+    const thermal::Quantities bit = thermal::known_bit(thermal::quantity_row(each.name));
+    EXPECT_EQ(rows.at(0).known, bit) << each.name << ": a law that asks whether it is known would ignore it";
+  }
+}
+
+/// A law may use an optional quantity only where the log has a value.
+TEST(SignalTable, OptionalQuantitiesAreUnknownWhereTheLogHasNoValue) {
+  for (std::size_t row = 0; row < thermal::kQuantityCount; ++row) {
+    const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[row];
+    if (!each.is_optional || each.column.empty()) {
+      continue;
+    }
+    recording::Recording log;
+    log.name = "log";
+    log.time_s = {0.0, 1.0};
+    log.run_begins = {0};
+    log.channels.push_back({*recording::quantity_named(each.column), {std::numeric_limits<double>::quiet_NaN(), 4.0}});
+    const MeasuredRunOptions options{.ambient_C = 25.0};
+    const LogRows rows(log, options);
+    EXPECT_EQ(rows.at(0).known, 0U) << each.name;
+    EXPECT_EQ(rows.at(0).*each.value, thermal::OperatingPoint<double>{}.*each.value) << each.name;
+    EXPECT_EQ(rows.at(1).known, thermal::known_bit(row)) << each.name;
+  }
+}
+
+/// No default of a temperature is safe: a law with a wrong one conducts heat to a body that is not there. The ambient temperature is the
+/// exception, because every run has one.
+TEST(SignalTable, TemperaturesAreOptional) {
+  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
+    EXPECT_EQ(each.is_optional && each.signal.has_value(), each.unit == "degC" && each.name != "ambient") << each.name;
   }
 }
 

@@ -144,7 +144,6 @@ static inline void @_cool(@_law law, const float *resting_C, float elapsed_s, fl
   int node;
   int step;
   @_clear((unsigned char *)&off, (int)sizeof off);
-  off.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
 @OFF@  longest_s = @_cooling_step_s(law, &off, state_C);
   for (node = 0; node < @NODES@; ++node) {
     peak_C[node] = state_C[node];
@@ -184,7 +183,6 @@ static inline void @_heat(@_law law, float unsaved_s, float *state_C) {
     most_C = state_C[node] > most_C ? state_C[node] : most_C;
   }
   @_clear((unsigned char *)&on, (int)sizeof on);
-  on.ambient_C = @CAP@_HOTTEST_AMBIENT_C;
 @ON@  for (step = 0; step < @CAP@_MOST_HEATING_STEPS && left_s > 0.0f; ++step) {
     @_clear((unsigned char *)most_K_per_s, (int)sizeof most_K_per_s);
 @LOADS@    for (node = 0; node < @NODES@; ++node) {
@@ -259,15 +257,23 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
 
 )";
 
-/// Assigns worst-case values to signals that are unknown without power.
+/// Assigns the values without power that are not 0.
 std::string unwatched_signals(const Source& source, std::string_view input) {
   const auto values = signals_without_power(source.derating);
   std::string text;
   for (const observed::Signal signal : source.signals) {
-    if (signal == observed::neighbour) {
-      text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
-    } else if (signal == observed::age) {
-      text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(values[signal]));
+    switch (observed::signals()[static_cast<std::size_t>(signal)].without_power) {
+      case thermal::WithoutPower::zero:
+        break;
+      case thermal::WithoutPower::hottest_air:
+        text += fmt::format("  {}.{} = {}_HOTTEST_AMBIENT_C;\n", input, name_of(signal), source.capital);
+        break;
+      case thermal::WithoutPower::winding_limit:
+        text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
+        break;
+      case thermal::WithoutPower::largest:
+        text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(values[signal]));
+        break;
     }
   }
   return text;

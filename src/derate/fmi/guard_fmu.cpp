@@ -16,16 +16,27 @@ constexpr FmuItem kReasons[] = {{"full", "all that a cold motor may draw at this
                                 {"input_unknown", "an input was NaN or implausible: its hottest case was used"},
                                 {"not_started", "the state was not started or damaged: taken as hot as the limit"}};
 
+/// Value of an input that the user does not connect: the worst case for which the guard is designed, and the hours of a new motor.
+double start_value(const Derating& derating, const observed::SignalSpec& signal) {
+  switch (signal.without_power) {
+    case thermal::WithoutPower::hottest_air:
+      return derating.rules.hottest_ambient_C;
+    case thermal::WithoutPower::winding_limit:
+      return derating.rules.limits.winding_C;
+    case thermal::WithoutPower::zero:
+    case thermal::WithoutPower::largest:
+      break;
+  }
+  return 0.0;
+}
+
 std::vector<FmuVariable> guard_variables(const Derating& derating) {
   std::vector<FmuVariable> all{{"time_s", FmuCausality::independent, FmuType::real, 0.0, "simulated time"}};
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (derating.observer.uses(static_cast<observed::Signal>(i))) {
-      const std::string name(observed::signals()[i].name);
-      // An unconnected input has the worst-case value for which the guard is designed.
-      const double start = i == observed::ambient     ? derating.rules.hottest_ambient_C
-                           : i == observed::neighbour ? derating.rules.limits.winding_C
-                                                      : 0.0;
-      all.push_back({name, FmuCausality::input, FmuType::real, start, std::string(observed::signals()[i].meaning)});
+      const observed::SignalSpec& signal = observed::signals()[i];
+      all.push_back(
+          {std::string(signal.name), FmuCausality::input, FmuType::real, start_value(derating, signal), std::string(signal.meaning)});
     }
   }
   all.push_back({"start_C", FmuCausality::parameter, FmuType::real, derating.rules.hottest_ambient_C,

@@ -78,7 +78,7 @@ S value_of_driver(const Situation<S>& x) {
       return x.at.knows(kNeighbour) ? S(x.at.neighbour_C - x.temperature_C(watched)) : S(0.0);
     default:
       if (chosen_driver >= column) {
-        return x.at.*kColumns<S>[static_cast<std::size_t>(chosen_driver - column)];
+        return x.at.*kQuantities<S>[column_row(static_cast<std::size_t>(chosen_driver - column))].value;
       }
       return x.at.*kQuantities<S>[kRows[static_cast<std::size_t>(chosen_driver)]].value;
   }
