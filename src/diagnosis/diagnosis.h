@@ -103,13 +103,16 @@ struct Diagnosis {
   attribution::Selection selection;
 };
 
-/// Errors of the free-running models on hold-out runs, which influenced no decision.
+/// Errors of free-running models on hold-out runs, which influenced no decision. score_holdout() fills them with those of the models of the
+/// diagnosis; score_files() then replaces three of them by those of the motor files.
 struct HoldoutScore {
   std::vector<estimation::MeasuredRun> runs;
-  estimation::Errors before, refitted, after;  ///< same models as in Diagnosis
-  estimation::Errors file;                     ///< errors of the written motor file alone
-  std::vector<calibration::PredictedRun> runs_before,
-      runs_after;  ///< predictions of the original and the extended motor file; set by score_files()
+  estimation::Errors before;    ///< original motor file, by score_files(); before that, the calibrated model
+  estimation::Errors refitted;  ///< model with only its own parameters refitted to the training runs
+  estimation::Errors after;     ///< extended motor file, by score_files(); before that, the model with its effects and run deviations
+  estimation::Errors file;      ///< same values as `after`, by score_files(); before that, the final model without run deviations
+  /// Predictions of the original and the extended motor file; set by score_files().
+  std::vector<calibration::PredictedRun> runs_before, runs_after;
   std::vector<BeyondTraining> beyond_training;
 };
 

@@ -16,9 +16,10 @@ namespace heatsoak::diagnosis {
 struct ExtensionsMayImitate {
   std::vector<std::string> effects;
 };
-/// No log has these columns, which an effect of the file depends on. They are taken as 0.
-struct ColumnsTakenAsZero {
-  std::vector<std::string> columns;
+/// No log has these signals, which an effect of the file depends on. Each keeps its default of OperatingPoint, or stays unknown if it is
+/// optional.
+struct SignalsMissing {
+  std::vector<thermal::Signal> signals;  ///< at least one
   std::string effect;
 };
 /// A conditional effect acts in every run, because its type has no size that could be set to 0.
@@ -49,7 +50,7 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ColumnsTakenAsZero, ConditionNotApplied, ConditionNeverMet,
+using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, SignalsMissing, ConditionNotApplied, ConditionNeverMet,
                                       IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
                                       calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
 

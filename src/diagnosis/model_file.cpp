@@ -56,14 +56,14 @@ void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<r
     throw NoHeatInput(motor.id);
   }
   for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
-    std::vector<std::string> lacking;
+    std::vector<thermal::Signal> lacking;
     for (const thermal::Signal signal : signals_of(effect, out.model)) {
       if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
-        lacking.emplace_back(estimation::column_of(signal));
+        lacking.push_back(signal);
       }
     }
     if (!lacking.empty()) {
-      out.findings.emplace_back(ColumnsTakenAsZero{std::move(lacking), effect.name});
+      out.findings.emplace_back(SignalsMissing{std::move(lacking), effect.name});
     }
   }
 }

@@ -31,7 +31,7 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
 /// are not properties of a motor and are left out.
 motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
-/// Predicts the hold-out recordings from both motor files with predict(), and replaces the errors before and after in `score`. Per signal
+/// Predicts the hold-out recordings from both motor files with predict(), and replaces `before`, `after` and `file` of `score`. Per signal
 /// the errors are those of the run with the largest error after the diagnosis. Does nothing without recordings.
 void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
                  const calibration::PredictionOptions& options, HoldoutScore& score);

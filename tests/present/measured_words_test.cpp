@@ -14,6 +14,7 @@
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
 #include "present/measured/calibration_words.h"
+#include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/failure_words.h"
 #include "present/measured/friction_words.h"
@@ -210,6 +211,43 @@ TEST(WordsOfDiagnosis, FactorsOfCurves) {
               testing::StartsWith("Unexplained: heat out of the winding that no measured signal explains; it is a curve over the time "));
   EXPECT_THAT(sentence("speed", Multiplier::difference, -0.1),
               HasSubstr("the temperature difference from winding to stator times a curve over speed, "));
+}
+
+TEST(WordsOfDiagnosis, Findings) {
+  using namespace diagnosis;
+  const std::vector<std::pair<DiagnosisFinding, Severity>> severities{
+      {ExtensionsMayImitate{{"contact_law"}}, Severity::warning},
+      {ContradictingRun{}, Severity::warning},
+      {SignalsMissing{}, Severity::note},
+      {IntervalsOfDataSheet{}, Severity::note},
+      {calibration::RowsTurn{}, Severity::note},
+  };
+  for (const auto& [finding, severity] : severities) {
+    EXPECT_EQ(severity_of(finding), severity) << words_of(finding);
+  }
+}
+
+TEST(Diagnosis, PageAndJsonKeepTheSeverityOfWarnings) {
+  diagnosis::DiagnosisAnswer answer;
+  answer.findings = {diagnosis::IntervalsOfDataSheet{}, diagnosis::ExtensionsMayImitate{{"contact_law"}}};
+  const Json json = diagnosis_json(answer, {});
+  EXPECT_EQ(json["notes"].size(), 2U);
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_EQ(json["warnings"][0], words_of(answer.findings[1]));
+  const std::string page = diagnosis_page(answer, {}, {});
+  EXPECT_THAT(page, HasSubstr("<li><strong>Warning:</strong> an effect similar to contact_law"));
+  EXPECT_LT(page.find("an effect similar to contact_law"), page.find(words_of(answer.findings[0]).substr(12)));
+}
+
+/// A missing signal has the default of its row; no default is safe for the temperature of a neighbour.
+TEST(WordsOfDiagnosis, MissingSignalsHaveTheAssumptionOfTheirRow) {
+  using thermal::Signal;
+  const auto words = [](std::vector<Signal> signals) {
+    return words_of(diagnosis::DiagnosisFinding(diagnosis::SignalsMissing{std::move(signals), "loss"}));
+  };
+  EXPECT_EQ(words({Signal::current, Signal::speed}), "no log has current_A and speed_rad_per_s, on which loss depends; the value 0 is used");
+  EXPECT_EQ(words({Signal::neighbour_temperature}),
+            "no log has neighbour_C, on which loss depends; the temperature of the neighbour is treated as unknown");
 }
 
 TEST(WordsOfCalibration, NotesOfForecasts) {

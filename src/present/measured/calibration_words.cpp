@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <type_traits>
 
 #include "base/quantity.h"
 #include "estimation/turning_rows.h"
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
+#include "present/measured/severity_of_kind.h"
 
 namespace heatsoak::present {
 namespace {
@@ -373,17 +373,13 @@ std::string words_of(const calibration::GrownError& error) {
 }
 
 Severity severity_of(const calibration::CalibrationFinding& finding) {
-  return std::visit(
-      [](const auto& each) {
-        using Finding = std::decay_t<decltype(each)>;
-        constexpr bool is_warning =
-            std::is_same_v<Finding, calibration::HeatSeemsWrong> || std::is_same_v<Finding, calibration::ResistanceDiffers> ||
-            std::is_same_v<Finding, calibration::LargeChange> || std::is_same_v<Finding, calibration::OutsideDeclaredRange> ||
-            std::is_same_v<Finding, calibration::PoorFit>;
-        constexpr bool is_background = std::is_same_v<Finding, calibration::CrossValidation>;
-        return is_warning ? Severity::warning : is_background ? Severity::background : Severity::note;
-      },
-      finding);
+  using namespace calibration;
+  using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit>;
+  using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
+                      FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
+                      ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, estimation::RunNote>;
+  using Background = Kinds<CrossValidation>;
+  return severity_in<Warnings, Notes, Background>(finding);
 }
 
 namespace {

@@ -42,9 +42,9 @@ std::string headline_of(const diagnosis::Diagnosis& diagnosis) {
 
 Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
   Document document{.headline = {{headline_of(answer.diagnosis)}}, .paragraphs = diagnosis_words(answer.diagnosis, answer.score)};
-  std::vector<DiagnosisNote> notes = diagnosis_notes(answer, readings);
-  std::ranges::stable_partition(notes, [](const DiagnosisNote& each) { return each.severity == Severity::warning; });
-  for (const DiagnosisNote& each : notes) {
+  std::vector<Note> notes = diagnosis_notes(answer, readings);
+  std::ranges::stable_partition(notes, [](const Note& each) { return each.severity == Severity::warning; });
+  for (const Note& each : notes) {
     document.add_note(each.severity, each.words);
   }
   return document;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/prediction.h"
 
@@ -114,12 +114,16 @@ Json untested_json(const std::vector<attribution::UntestedEffect>& untested) {
   return words;
 }
 
-Json notes_json(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
-  Json words = Json::array();
-  for (const DiagnosisNote& each : diagnosis_notes(answer, readings)) {
-    words.push_back(each.words);
+/// Adds all notes and, once more, those that are warnings.
+void add_notes(Json& json, const std::vector<Note>& notes) {
+  json["notes"] = Json::array();
+  json["warnings"] = Json::array();
+  for (const Note& each : notes) {
+    json["notes"].push_back(each.words);
+    if (each.severity == Severity::warning) {
+      json["warnings"].push_back(each.words);
+    }
   }
-  return words;
 }
 
 Json ladder_json(const attribution::Selection& selection) {
@@ -197,7 +201,7 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
     json["next_experiments"].push_back(
         {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats, 1)}});
   }
-  json["notes"] = notes_json(answer, readings);
+  add_notes(json, diagnosis_notes(answer, readings));
   return json;
 }
 

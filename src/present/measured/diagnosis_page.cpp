@@ -11,7 +11,7 @@
 #include "base/quantity.h"
 #include "base/xml_text.h"
 #include "estimation/thresholds.h"
-#include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 
 namespace heatsoak::present {
@@ -278,9 +278,9 @@ std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<c
     }
     text += "</ul>\n";
   }
-  std::vector<std::string> remarks;
-  for (DiagnosisNote& each : diagnosis_notes(answer, readings)) {
-    remarks.push_back(std::move(each.words));
+  std::vector<std::string> warnings, remarks;
+  for (Note& each : diagnosis_notes(answer, readings)) {
+    (each.severity == Severity::warning ? warnings : remarks).push_back(std::move(each.words));
   }
   if (!diagnosis.selection.unseen.empty()) {
     remarks.push_back(
@@ -289,6 +289,9 @@ std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<c
   std::ranges::move(refusal_words(diagnosis.selection), std::back_inserter(remarks));
   std::ranges::move(by_reason(diagnosis.selection.not_judged), std::back_inserter(remarks));
   text += "<h2>Effects not tested, and assumptions</h2><ul>";
+  for (const std::string& warning : warnings) {
+    text += "<li><strong>Warning:</strong> " + base::xml_text(warning) + "</li>";
+  }
   for (const std::string& remark : remarks) {
     text += "<li>" + base::xml_text(remark) + "</li>";
   }

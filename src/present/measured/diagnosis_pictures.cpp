@@ -7,7 +7,7 @@
 
 #include "attribution/scan_term.h"
 #include "estimation/interval.h"
-#include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_output.h"
 
 namespace heatsoak::present {
 namespace {

@@ -13,10 +13,12 @@
 
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/log_rows.h"
 #include "estimation/thresholds.h"
 #include "motor/sensor_effect.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
+#include "present/measured/severity_of_kind.h"
 
 namespace heatsoak::present {
 namespace {
@@ -283,8 +285,23 @@ std::string say(const diagnosis::ContradictingRun& run) {
       base::significant(run.alone_K, 2));
 }
 
-std::string say(const diagnosis::ColumnsTakenAsZero& of) {
-  return fmt::format("no log has {}, on which {} depends; the value 0 is used", fmt::join(of.columns, " and "), of.effect);
+/// Returns what a law assumes about a signal that no log has, by its row of the table of quantities.
+std::string assumption_in_words(thermal::Signal signal) {
+  const thermal::OperatingQuantity<double>& row = thermal::quantity_of(signal);
+  return row.is_optional ? fmt::format("the {} is treated as unknown", row.lacking)
+                         : fmt::format("the value {} is used", thermal::OperatingPoint<double>{}.*row.value);
+}
+
+std::string say(const diagnosis::SignalsMissing& of) {
+  std::vector<std::string_view> columns;
+  std::vector<std::string> assumptions;
+  for (const thermal::Signal signal : of.signals) {
+    columns.push_back(estimation::column_of(signal));
+    if (std::string assumption = assumption_in_words(signal); std::ranges::find(assumptions, assumption) == assumptions.end()) {
+      assumptions.push_back(std::move(assumption));
+    }
+  }
+  return fmt::format("no log has {}, on which {} depends; {}", fmt::join(columns, " and "), of.effect, fmt::join(assumptions, " and "));
 }
 
 std::string say(const diagnosis::ConditionNotApplied& of) {
@@ -323,7 +340,9 @@ std::string say(const diagnosis::ColumnsNotSearched& of) {
                      fmt::join(of.columns, ", "), it_or_them(of.columns.size()));
 }
 
-std::string diagnosis_finding_words(const diagnosis::DiagnosisFinding& finding) {
+}  // namespace
+
+std::string words_of(const diagnosis::DiagnosisFinding& finding) {
   return std::visit(
       [](const auto& each) {
         if constexpr (std::is_constructible_v<calibration::CalibrationFinding, decltype(each)>) {
@@ -335,7 +354,13 @@ std::string diagnosis_finding_words(const diagnosis::DiagnosisFinding& finding) 
       finding);
 }
 
-}  // namespace
+Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
+  using namespace diagnosis;
+  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun>;
+  using Notes = Kinds<SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
+                      TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+  return severity_in<Warnings, Notes, Kinds<>>(finding);
+}
 
 std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> all;
@@ -440,18 +465,15 @@ std::string experiment_words(const diagnosis::Experiment& experiment) {
              : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", experiment.what, fmt::join(levels, " and "));
 }
 
-std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
-  std::vector<DiagnosisNote> notes;
+std::vector<Note> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
+  std::vector<Note> notes;
   for (std::string& each : reading_words(readings)) {
     notes.push_back({Severity::background, std::move(each)});
   }
-  const auto is_warning = [](const diagnosis::DiagnosisFinding& finding) {
-    return std::holds_alternative<diagnosis::ExtensionsMayImitate>(finding) || std::holds_alternative<diagnosis::ContradictingRun>(finding);
-  };
   const auto add_findings = [&](bool warnings) {
     for (const diagnosis::DiagnosisFinding& each : answer.findings) {
-      if (is_warning(each) == warnings) {
-        notes.push_back({warnings ? Severity::warning : Severity::note, diagnosis_finding_words(each)});
+      if (const Severity severity = severity_of(each); (severity == Severity::warning) == warnings) {
+        notes.push_back({severity, words_of(each)});
       }
     }
   };

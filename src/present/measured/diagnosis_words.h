@@ -30,11 +30,12 @@ std::string experiment_words(const diagnosis::Experiment& experiment);
 /// Returns the notes of the extended motor's file: run deviations, which are not properties of the motor.
 std::vector<std::string> notes_of_model_file(const diagnosis::Diagnosis& diagnosis);
 
-struct DiagnosisNote {
-  Severity severity = Severity::note;
-  std::string words;
-};
+/// Returns the finding as one sentence.
+std::string words_of(const diagnosis::DiagnosisFinding& finding);
+/// Warnings are findings after which a named effect may be wrong, or a missing one may stay unfound.
+Severity severity_of(const diagnosis::DiagnosisFinding& finding);
+
 /// Returns the notes in the order of the JSON: logs, warnings, admission, assumptions. Rejected samples of the logs are background.
-std::vector<DiagnosisNote> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings);
+std::vector<Note> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings);
 
 }  // namespace heatsoak::present

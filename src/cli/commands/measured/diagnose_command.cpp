@@ -14,7 +14,7 @@
 #include "duty/named_files.h"
 #include "motor/write_motor.h"
 #include "present/measured/diagnosis.h"
-#include "present/measured/diagnosis_answer.h"
+#include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/failure_words.h"
 
