@@ -50,8 +50,8 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
   return fastest_per_s > 0.0F ? kStep_share / fastest_per_s : model.period_s;
 }
 
-/// One step of the classical method of Runge and Kutta. Raises `peak_C` to the highest temperature of each node during the step; between its
-/// ends a node that first warms and then cools follows a parabola.
+/// One step of the classical method of Runge and Kutta. Raises `peak_C` to the highest temperature of each node during the step; between
+/// its ends a node that first warms and then cools follows a parabola.
 void cool_for(const GuardModel& model, const float* signal, float step_s, float* state_C, float* carry_K, float* peak_C) {
   float rate_K_per_s[4][kMostGuardNodes];
   float ahead_C[kMostGuardNodes];

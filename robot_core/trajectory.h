@@ -31,7 +31,7 @@ struct AxisLimits {
   }
 };
 
-/// Reason why there is no trajectory. The numbers are stable because telemetry contains them.
+/// Result of a planner: `ok`, or the reason why there is no trajectory. The numbers are stable because telemetry contains them.
 enum class PlanResult : unsigned char {
   ok = 0,
   /// A state, target or limit is NaN or infinite.
@@ -109,15 +109,8 @@ enum class Target : unsigned char {
   moving_on,
 };
 
-/// Plans the fastest motion of one axis. A start outside the limits is first led back inside along the shortest path. If the result is ok,
-/// the last segment ends at the target within 1e-8 (float: 1e-3) of these scales, mostly within 1e-15: the limits for velocity and
-/// acceleration; for the position, the larger magnitude of start and target plus velocity^2/acceleration of the limits. If the path goes
-/// far beyond those positions, its rounding errors appear as a jump at the farthest segment boundary. That jump is within the same
-/// fraction of the farthest position plus velocity^2/acceleration. Limits that the start keeps are kept to 1e-10 (float: 4e-3) of the
-/// larger of both directions. If this accuracy is not reached, the result is out_of_range. That holds for none of 10^6 problems with
-/// scales within four decades of each other, in any units. With velocity, acceleration and jerk up to twelve decades apart it holds for 5
-/// of 10^5 to 74 of 10^4, depending on how states are drawn. A target missed by a rounding error (1e-11, float: 1e-5) of the velocities
-/// counts as met.
+/// Plans the fastest motion of one axis. A start outside the limits is first led back inside along the shortest path. The accuracy is that
+/// of docs/planners.md; a motion that cannot reach it has the result out_of_range.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                          Trajectory<Real>& trajectory, Target how = Target::at_position);
@@ -133,13 +126,10 @@ template <typename Real>
 PlanResult plan_bang_bang(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                           Trajectory<Real>& trajectory, Target how = Target::at_position);
 
-/// Plans several axes that arrive together as early as possible, at most kMostAxes. The slowest axis moves as plan_position() plans it.
-/// The others use the time: each blends its widest and its lowest motion of that duration. An axis with symmetric limits and rest at both
-/// ends so keeps the shape of its fastest motion. If the target has a velocity at a fixed position, follow a plan to its end. A plan made
-/// on the way may find that rounding has made the arrival impossible, and come back for it. Targets at rest and Target::moving_on can be
-/// planned anew at every tick. If the result is not ok, `failed_axis` (may be null) is set to the axis concerned, except for
-/// not_that_many_axes.
 inline constexpr int kMostAxes = 6;
+/// Plans several axes that arrive together as early as possible, at most kMostAxes. The slowest axis moves as plan_position() plans it. If
+/// the result is not ok, `failed_axis` (may be null) is set to the axis concerned, except for not_that_many_axes. Targets at rest and
+/// Target::moving_on can be planned anew at every tick; a plan to a velocity at a fixed position must be followed to its end.
 template <typename Real>
 PlanResult plan_synchronised(int axis_count, const AxisState<Real>* start, const AxisState<Real>* target, const AxisLimits<Real>* limits,
                              Trajectory<Real>* trajectories, Target how = Target::at_position, int* failed_axis = nullptr);
@@ -159,18 +149,11 @@ struct PlaneLimits {
   Real jerk_max = 0;          ///< m/s3
 };
 
-/// Plans x, y and yaw of a robot (axes 0, 1 and 2) so that they arrive together. A circle bounds speed, acceleration and jerk in the plane:
-/// x gets the fraction cos(split) of each limit, y the fraction sin(split). The split makes both axes equally slow, within what the target
-/// needs. A target may use all but 1e-6 (float: 1e-4, in chases of up to two minutes) of a limit. If no split leaves room for its velocity,
-/// or for its acceleration in addition, the result names that limit.
-/// If the start does not fit the split (a turn at full speed), the split turns. If no split fits or the motion takes long, the plan begins
-/// with a lead. In the lead x and y bring the acceleration to zero along its own direction and may then brake along the velocity. The
-/// result is the shortest of these plans that stays inside the circle to 0.2 %.
-/// Let w = |v + a |a|/(2 jerk_max)|, the speed after the acceleration was braked along its own direction. A plan inside exists from every
-/// start with |v| <= speed_max, |a| <= acceleration_max and w <= speed_max. It also exists if the axes of the start keep the fractions of
-/// one split, and from every state of such a plan. Planning anew in every tick therefore stays inside. From other starts the speed never
-/// exceeds the larger of |v| and w, and the acceleration never exceeds that of the start. A target whose own acceleration leads out of the
-/// circle is followed out of it. The result is out_of_range if every plan leads further out.
+/// Plans x, y and yaw of a robot (axes 0, 1 and 2) so that they arrive together. Speed, acceleration and jerk in the plane stay inside
+/// their circles to 0.2 % if the start does, also if the motion is planned anew in every tick. docs/planners.md states for which starts
+/// this holds and what bounds the others. A target may use all but 1e-6 (float: 1e-4) of a limit; else the result names the limit that has
+/// no room for it. A target whose own acceleration leads out of the circle is followed out of it. The result is out_of_range if every plan
+/// leads out.
 template <typename Real>
 PlanResult plan_plane(const AxisState<Real> (&start)[3], const AxisState<Real> (&target)[3], const PlaneLimits<Real>& plane,
                       const AxisLimits<Real>& yaw, Trajectory<Real> (&trajectories)[3], Target how = Target::at_position);

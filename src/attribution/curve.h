@@ -12,8 +12,8 @@ namespace heatsoak::attribution {
 inline constexpr int kKnots = 7;
 /// Returns kKnots equally spaced knots from the low to the high end of the range.
 std::vector<double> knots_from(const Regressor::Range& range);
-/// Returns such knots, but if a signal other than a temperature changes its sign, the range is extended so that one knot is 0. The curve
-/// may then differ between forward and reverse, or driving and braking.
+/// Returns kKnots equally spaced knots over the range. For a signal with both signs that is no temperature, the range is extended so that
+/// one knot is 0. The curve may then differ between forward and reverse, or driving and braking.
 std::vector<double> knots_between(Regressor::Range range, RegressorKind kind);
 
 /// The two hat functions that are nonzero at a value: knots `left` and `left` + 1, with weights 1 − right_share and right_share. Values

@@ -68,7 +68,7 @@ class Rounds {
   [[nodiscard]] estimation::PosteriorOptions options_with(const estimation::LatentFlux& flux) const;
   /// Returns options for a fit that is averaged over the neighbours of `place`.
   [[nodiscard]] estimation::PosteriorOptions final_options(const estimation::FluxPlace& place) const;
-  /// Same as estimation::more_predictive(), with plain least squares as the other fit.
+  /// Returns `fit` or plain least squares of the free runs, by the rule of estimation::more_predictive().
   [[nodiscard]] estimation::Posterior more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const;
   /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Returns
   /// more_predictive() for such a fit, otherwise `fit`.

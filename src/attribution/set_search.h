@@ -47,7 +47,8 @@ class SetSearch {
   void reconsider(const std::function<double(const std::vector<int>& members, const AtBest& at)>& fitted_nats, std::size_t most);
   /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }
-  /// Returns the probability of all sets with at least as many members of this family as the rank of `place` in its family.
+  /// Ranks the members of the set within their family, the most certain first. Returns the probability of all sets that have at least as
+  /// many members of the family as the rank of the member at `place`.
   [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place) const;
   /// Returns ln P of `set` minus that of the best set with fewer members of this family; 0 if there is none.
   [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place) const;
@@ -94,7 +95,7 @@ SetColumns columns_of(const std::vector<int>& members, const std::vector<Candida
 /// if K is not positive definite.
 double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
                      const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
-/// Same for a set at one point.
+/// Returns the gain of a set at one point; products, right side and precision are those of `set`.
 double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
 
 }  // namespace heatsoak::attribution

@@ -14,7 +14,7 @@ using Progress = std::function<void(std::size_t done, std::size_t total)>;
 /// Each finished job calls `progress` with `done` increased by one. The calls come from one thread at a time.
 void in_parallel(std::size_t count, int threads, std::size_t done, std::size_t total, const Progress& progress,
                  const std::function<void(std::size_t)>& job);
-/// The same without progress reports.
+/// Runs job(0) … job(count − 1) on `threads` threads without progress reports.
 inline void in_parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& job) {
   in_parallel(count, threads, 0, count, {}, job);
 }

@@ -27,7 +27,7 @@ struct Spread {
   bool by_ratio = true;
 };
 
-/// The same quantity from an independent source; `heatsoak lint` compares the two.
+/// Value of a parameter in a second, independent source; `heatsoak lint` compares the two.
 struct Confirmation {
   std::string source;  ///< an id of the file's [sources]
   double value = 0.0;  ///< in the unit of the value that it confirms

@@ -69,8 +69,9 @@ HeatInput heat_input_for(std::span<const recording::Recording> recordings, const
 /// Returns true if the motor has a remaining_loss effect, that is, takes its losses from a measured power balance.
 bool has_remaining_loss(const motor::Motor& motor);
 
-/// Same as heat_input_for(), but prefers the power balance if all recordings have current, input power, torque and speed. The motor must
-/// then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its losses.
+/// Returns the heat input as heat_input_for() does, but prefers the power balance if all recordings have current, input power, torque and
+/// speed. The motor must then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its
+/// losses.
 HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, bool may_add_remaining_loss);
 
 /// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable.

@@ -13,7 +13,7 @@ namespace heatsoak::cli {
 
 /// `value` holds the default and is set in the unit of `spec`. A wrong unit or range is a usage error.
 CLI::Option* add_quantity(CLI::App& app, const std::string& flag, double& value, const base::ParameterSpec& spec);
-/// The same for a value whose default depends on other inputs.
+/// Adds an option without a default of its own, because the default depends on other inputs.
 CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<double>& value, const base::ParameterSpec& spec);
 
 /// Returns a check for an integer from 0 to `most`. It replaces CLI11's parsing, which reads -1 as 2^64 − 1, clips too large numbers and

@@ -38,7 +38,7 @@ auto with_progress(const Run& run) {
   const JobLine line;
   return run(line.progress());
 }
-/// The same for a job of one phase, which gets a plain progress. `usual_s`: its usual duration.
+/// Runs a job of one phase, named `what`, which gets a base::Progress. `usual_s`: its usual duration.
 template <class Run>
 auto with_progress(const std::string& what, double usual_s, const Run& run) {
   const JobLine line;

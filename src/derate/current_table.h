@@ -10,7 +10,7 @@
 namespace heatsoak::derate {
 
 /// Above the highest speed of the rules the allowed current falls linearly, so that a motor that is driven from outside can still brake and
-/// its current has no step. It reaches 0 at rules.no_current_speed, at least at this ratio to the highest speed.
+/// its current has no step. It reaches 0 at rules.no_current_speed_rad_per_s, at least at this ratio to the highest speed.
 inline constexpr double kSpeedFadeOut_ratio = 1.1;
 
 /// Bounds of a table relative to the exact current (Barrier), verified at points that are not breakpoints of the table.

@@ -59,7 +59,8 @@ struct Derating {
   std::vector<ActingEffect> effects;
   Guarantee guarantee;
   std::vector<UsePlayed> uses;
-  double reachable_speed_rad_per_s = 0.0;  ///< above rules.most_speed if beyond that the motor exceeds a limit even without current
+  /// Above rules.most_speed_rad_per_s if beyond that the motor exceeds a limit even without current.
+  double reachable_speed_rad_per_s = 0.0;
   /// Default tolerances of values for which the motor's file gives none.
   std::vector<motor::DefaultSpread> default_spreads = {};
   std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee

@@ -24,7 +24,7 @@ struct LoadPattern {
   double speed_share = 0.0;  ///< speed as a share of the rules' highest speed
   double on_s = 0.0;         ///< length of a pulse; 0: continuous
   double off_s = 0.0;
-  double off_speed_share = 0.0;  ///< the same while coasting between pulses
+  double off_speed_share = 0.0;  ///< speed while coasting between pulses, as a share of the rules' highest speed
   HotCase hot_case = {};
 
   bool operator==(const LoadPattern&) const = default;

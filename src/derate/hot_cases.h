@@ -61,8 +61,8 @@ std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rul
 std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, observed::Signal signal);
 
 /// Returns the highest speed in rad/s at which the motor keeps its limits without current: in every hot case the bodies have temperatures
-/// within the limits at which no node heats any further. Beyond it the motor overheats even without current. At most rules.most_speed; 0 if
-/// this fails at rest.
+/// within the limits at which no node heats any further. Beyond it the motor overheats even without current. At most
+/// rules.most_speed_rad_per_s; 0 if this fails at rest.
 double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
 
 }  // namespace heatsoak::derate

@@ -59,7 +59,7 @@ class Observer {
   [[nodiscard]] const thermal::Formula& formula() const { return formula_; }
   /// Index of the formula step that computes dT/dt in K/s, one per state.
   [[nodiscard]] std::span<const int> rate_steps() const { return rate_steps_; }
-  /// The same without the safety factor: estimates for display, not for protection.
+  /// Steps of dT/dt without the safety factor on heat: estimates for display, not for protection.
   [[nodiscard]] std::span<const int> nominal_rate_steps() const { return nominal_rate_steps_; }
   [[nodiscard]] std::span<const std::string> state_names() const { return state_names_; }
   [[nodiscard]] std::size_t state_count() const { return state_names_.size(); }

@@ -8,8 +8,8 @@
 namespace heatsoak::derate {
 namespace {
 
-/// Returns whether no node warms from `state_C`, nor from temperatures that are higher by the same amount. Heat flows from hot to cold, so a
-/// state below such a bound stays below it (comparison theorem of cooperative systems; M. W. Hirsch and H. Smith, 2005, theorem 3.1).
+/// Returns whether no node warms from `state_C`, nor from temperatures that are higher by the same amount. Heat flows from hot to cold, so
+/// a state below such a bound stays below it (comparison theorem of cooperative systems; M. W. Hirsch and H. Smith, 2005, theorem 3.1).
 bool bounds_all_later(const thermal::RateFunction& rates, std::span<const double> state_C) {
   constexpr double kSolverError_K_per_s = 1e-9;
   std::vector<double> above_C(state_C.size());

@@ -9,14 +9,14 @@
 
 namespace heatsoak::derate {
 
-/// Inputs of the observer without power, in the order of observed::Signal, by FirmwareInput::without_power: no current, speed or airflow, the
-/// hottest air, a neighbour at the winding limit and the highest age.
+/// Inputs of the observer without power, in the order of observed::Signal, by FirmwareInput::without_power: no current, speed or airflow,
+/// the hottest air, a neighbour at the winding limit and the highest age.
 std::array<double, observed::kSignalCount> signals_without_power(const Derating& derating);
 
-/// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. They bound
-/// what a restored guard may assume of time that it does not simulate: temperatures that are at most c ≥ 0 above these stay so for ever.
-/// `rate_steps`: the observer's rates with or without the safety factor on heat. If this does not hold for the laws of the motor, the rise
-/// over the air is enlarged until it does; if that does not help, the result is the winding limit.
+/// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. They
+/// bound what a restored guard may assume of time that it does not simulate: temperatures that are at most c ≥ 0 above these stay so for
+/// ever. `rate_steps`: the observer's rates with or without the safety factor on heat. If this does not hold for the laws of the motor, the
+/// rise over the air is enlarged until it does; if that does not help, the result is the winding limit.
 std::vector<double> resting_C(const Derating& derating, std::span<const int> rate_steps);
 
 /// Larger than the last digit of a temperature in single precision and in the integer form.

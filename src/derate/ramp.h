@@ -22,8 +22,8 @@ struct CurrentRamp {
   [[nodiscard]] double current_A(double signal_C) const;
 };
 
-/// Upper bound in A of any ramp at a temperature of its signal: the smallest current of the table over all speeds up to rules.most_speed
-/// and over every value of the temperature that the ramp does not measure.
+/// Upper bound in A of any ramp at a temperature of its signal: the smallest current of the table over all speeds up to
+/// rules.most_speed_rad_per_s and over every value of the temperature that the ramp does not measure.
 /// stator: over every winding temperature up to the limit. The smallest current occurs with the winding at its limit, where it stops
 /// heating (Nagumo 1942), so a ramp below it keeps the limit for any load before. A continuous load loses nothing, because the winding
 /// settles long before the stator. Only short peaks of a cold winding are lost.

@@ -1,4 +1,4 @@
-// A run that contradicts the other runs of the motor, for example because a sensor was moved or the mounting was changed before it.
+// Finds a run that contradicts the other runs of the motor.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace heatsoak::diagnosis {
 
-/// A run that the model follows with parameters of its own, but not with those of the other runs: a sensor was moved, or the mounting was
-/// changed.
+/// A run that the model follows with parameters of its own, but not with those of the other runs. A likely cause is a sensor that was
+/// moved, or a changed mounting.
 struct ContradictingRun {
   std::string run;           ///< name of the recording
   std::string signal;        ///< sensor with the largest error

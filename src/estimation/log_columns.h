@@ -14,19 +14,20 @@
 
 namespace heatsoak::estimation {
 
-/// Returns these columns by key: the mean over each interval between `time_s`, in the column's unit, NaN if the log has no value there.
-/// Includes a current that has both signs, because the network's laws use only its magnitude.
+/// Returns the means of all columns that are not part of an operating point, over each interval between `time_s`: by key, in the column's
+/// unit, NaN if the log has no value there. Temperatures are left out. current_A is included for its sign, because the network's laws use
+/// only its magnitude.
 std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s);
 
-/// Returns those of `columns`, over which the model has curves, that not all logs have; nothing if all have them.
+/// Returns the columns that not every log has; nothing if all have them. `columns` are those over which the model has curves.
 std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
 
 /// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
 /// confounded with other differences between the runs. Returns the names of the removed columns.
 std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> of_model);
 
-/// Copies columns of a run, at most kLogColumns, into its operating points in this order. Gaps take the nearest known value. The points
-/// mark columns that the run lacks as unknown (share 0).
+/// Copies columns of a run, at most kLogColumns, into its operating points in this order. Gaps take the nearest known value. A column
+/// that the run lacks becomes 0 and unknown (OperatingPoint::known).
 void set_columns(MeasuredRun& run, std::span<const std::string> keys);
 void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys);
 

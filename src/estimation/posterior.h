@@ -51,7 +51,8 @@ PosteriorOptions least_squares_options(const Model& model, int most_steps);
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                        const PosteriorOptions& options);
 
-/// Same for a trial model: if its temperatures diverge, returns an evidence of −∞ and empty results instead of throwing.
+/// Fits a trial model, whose temperatures may diverge: then the evidence is −∞ and the other results are empty. Arguments as in
+/// posterior_of().
 Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                            const PosteriorOptions& options);
 

@@ -51,10 +51,11 @@ struct StopTakesCurrent {
 using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
                               ConditionStated, StopTakesCurrent>;
 
+/// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
                                double braking_reserve_K);
 
-/// Returns the sentence for the generated README, which is below `present`; the answer of the verb uses the same.
+/// Returns the finding as a sentence, for the README of the generated folder and for the answer of `generate core`.
 std::string to_string(const CoreNote& note);
 
 }  // namespace heatsoak::firmware

@@ -7,13 +7,15 @@
 
 namespace heatsoak::friction {
 
+/// Voltages that the fit compares its result with.
 struct Expectation {
   ExpectedVoltages voltages;
   ExpectedFrom from = ExpectedFrom::robot_file;
   double damping_V_s_per_rad = 0.0;
 };
 
-/// Returns the expectation from the friction in the robot file, if that describes the body; else from back-EMF and drag of the motor only.
+/// Returns the expectation. It follows from the friction in the robot file if the file describes the body, else from back-EMF and drag of
+/// the motor alone.
 Expectation expectation(const robot::Robot& robot, const motor::MotorValues& motor);
 
 }  // namespace heatsoak::friction

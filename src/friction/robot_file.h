@@ -43,8 +43,8 @@ class DampingNegative : public base::Failure {
 std::string with_measured_friction(const std::string& text, const robot::Robot& robot, const robot::DriveConstants& drive,
                                    const FrictionFit& fit, const std::string& source, std::vector<WrittenAsZero>& notes);
 
-/// Same for the mechanical damping of a roll-out only. Throws Failure (cannot_answer) if a wheel has none, and
-/// DampingNegative if its whole interval is below 0.
+/// Returns the text of the robot file with friction.wheel_damping of a roll-out; everything else is unchanged. Throws Failure
+/// (cannot_answer) if a wheel has none, and DampingNegative if its whole interval is below 0.
 std::string with_measured_damping(const std::string& text, const robot::Robot& robot,
                                   const std::vector<std::optional<Estimate>>& wheel_damping_Nm_s_per_rad, const std::string& source);
 

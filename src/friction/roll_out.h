@@ -33,8 +33,8 @@ struct RollOutRun {
 
 struct RollOutResult {
   std::vector<RollOutRun> runs;
-  /// Mechanical damping per wheel, without back-EMF. The interval follows from the scatter between runs; it is empty with fewer
-  /// than three, and the whole entry without a run.
+  /// Mechanical damping per wheel, without back-EMF. The interval follows from the scatter between runs and is empty with
+  /// fewer than three runs. The entry of a wheel without a run is empty.
   std::vector<std::optional<Estimate>> wheel_damping_Nm_s_per_rad;
   std::vector<std::optional<Estimate>> wheel_torque_Nm;
   std::size_t rows = 0;
@@ -42,7 +42,8 @@ struct RollOutResult {
 
 /// Evaluates the roll-outs of all logs. `body` has the masses and inertias.
 RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::BodyConfig& body, bool is_lifted);
-/// Same, but the intervals include the uncertainty of masses and inertias in the robot file, with which all results scale.
+/// Evaluates the roll-outs of all logs. The intervals include the uncertainty of masses and inertias in the robot file, with which all
+/// results scale.
 RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::Robot& robot, const motor::MotorValues& motor, bool is_lifted);
 
 }  // namespace heatsoak::friction

@@ -11,7 +11,11 @@ namespace heatsoak::motor {
 
 /// State nodes of every motor's network; nodes added by its effects follow.
 namespace states {
-enum State : int { winding, stator, first_own };
+enum State : int {
+  winding,
+  stator,
+  first_own  ///< first node that an effect of the motor's file adds
+};
 }  // namespace states
 
 /// Names of the effects in every data sheet network.

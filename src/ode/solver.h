@@ -18,7 +18,8 @@ namespace heatsoak::ode {
 template <typename T>
 using SundialsHandle = std::unique_ptr<T, void (*)(T*)>;
 
-/// Base class: each SUNDIALS package is a subclass that implements the virtual functions and passes every return flag to check().
+/// Base class of the solvers, one for each SUNDIALS package. A subclass implements the virtual functions and passes every return flag of
+/// its package to check().
 class OdeSolver {
  public:
   enum class Stride { one_step, until_stop };
@@ -51,7 +52,7 @@ class OdeSolver {
   /// Rethrows an exception that the system threw during the call, or throws a Failure if `flag` reports one.
   void check(int flag);
 
-  /// A system that needs more steps per advance() is stuck and would run for hours.
+  /// A system that needs more steps in one call of integrate() is stuck and would run for hours.
   static constexpr long kMaximumSteps = 10'000'000;
 
   [[nodiscard]] SUNContext context() { return context_; }

@@ -14,7 +14,7 @@ namespace heatsoak::present {
 
 Document evaluation_document(const simulate::EvaluationAnswer& answer);
 Json evaluation_json(const simulate::EvaluationAnswer& answer);
-/// Picture of the evaluation, which is the one without a closed loop.
+/// Returns the picture of the sampled load, also if the answer contains games in a closed loop.
 report::Chart evaluation_chart(const simulate::EvaluationAnswer& answer);
 
 /// Returns the winding temperature over time as eight block characters, scaled from ambient (lowest) to the winding limit (highest). Each

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 /// Returns a JSON number rounded to `decimals`, or null for NaN and infinity.
 Json rounded(double value, int decimals);
-/// Does the same for a value that may be absent, which is null.
+/// Returns a JSON number rounded to `decimals`, or null without a value.
 Json rounded(const std::optional<double>& value, int decimals);
 
 /// Returns the answer of a command that failed.

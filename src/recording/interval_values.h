@@ -8,9 +8,9 @@
 
 namespace heatsoak::recording {
 
-/// Converts heat inputs and surroundings, recorded with convention `habit`, to values of the interval that begins at their row. Currents
+/// Converts heat inputs and surroundings, recorded with `convention`, to values of the interval that begins at their row. Currents
 /// are converted by their squares, which conserves the copper loss. Shifts channels by `offsets_s` (one per channel) to the rows' times:
-/// inputs by averaging, other channels by linear interpolation. Unless the habit is held, the inputs of a run's last row become NaN.
+/// inputs by averaging, other channels by linear interpolation. Unless the convention is `held`, the inputs of a run's last row become NaN.
 void to_interval_values(Recording& recording, InputConvention convention, std::span<const double> offsets_s);
 
 }  // namespace heatsoak::recording

@@ -106,12 +106,6 @@ void make_names_distinct(std::vector<Recording>& recordings, const FilesOfName& 
 
 }  // namespace
 
-NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
-  NamedLogs logs = read_usable_logs(fitted, held_out, choice);
-  logs.unread.throw_if_any();
-  return logs;
-}
-
 NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
   NamedLogs logs;
   logs.choice = choice;

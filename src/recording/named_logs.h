@@ -30,14 +30,12 @@ struct NamedLogs {
   std::vector<Recording> held_out;
   std::vector<LogReading> readings;  ///< reports of the logs in `fitted`, then of those in `held_out`
   LogChoice choice;                  ///< choice that they were read with
-  base::CollectedFailures unread;    ///< failures of the logs that could not be read; empty from read_named_logs()
+  base::CollectedFailures unread;    ///< failures of the logs that could not be read
 };
 
 /// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"); names of
-/// fitted logs do not depend on the hold-out logs. Throws Failure with the problems of all logs.
-NamedLogs read_named_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
-
-/// Same, but does not throw because of a log. The caller reports `unread`, with the problems that it finds in the other logs.
+/// fitted logs do not depend on the hold-out logs. Does not throw because of a log: the caller reports `unread`, with the problems that it
+/// finds in the other logs.
 NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 
 }  // namespace heatsoak::recording

@@ -72,7 +72,7 @@ struct DataQuality {
   std::vector<ClockOffset> clock_offsets;
   std::vector<Suspicion> suspicions;           ///< reported only, nothing is corrected
   std::vector<Suspicion> blocking;             ///< subset about units, signs and sensors that, if true, prevents any fit
-  std::vector<Suspicion> blocking_for_wheels;  ///< same for a robot's wheels and angles, and for the clock
+  std::vector<Suspicion> blocking_for_wheels;  ///< subset about the robot's wheels, its angles and the clock that prevents a friction fit
   Fitness thermal;                             ///< for fitting a thermal network
   Fitness drive;                               ///< for fitting friction of wheels
 };

@@ -34,8 +34,8 @@ std::vector<fs::path> plugin_folders() {
 fs::path find_plugin(std::string& searched) {
   for (const fs::path& folder : plugin_folders()) {
     std::error_code ignored;
-    if (fs::exists(folder / chart_plugin_file, ignored)) {
-      return folder / chart_plugin_file;
+    if (fs::exists(folder / kChartPluginFile, ignored)) {
+      return folder / kChartPluginFile;
     }
     searched += "\n  " + folder.string();
   }
@@ -48,7 +48,7 @@ fs::path found_plugin(const std::string& what_and_remedy) {
   if (plugin.empty()) {
     throw base::Failure(base::ExitCode::bad_input,
                         fmt::format("{}the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}", what_and_remedy,
-                                    chart_plugin_file, searched));
+                                    kChartPluginFile, searched));
   }
   return plugin;
 }
@@ -90,7 +90,7 @@ void require_drawing(std::string_view what, std::string_view remedy) { found_plu
 std::string draw_svg(const Chart& chart) {
   check_lengths(chart);
   std::string text;
-  if (!reinterpret_cast<DrawSvg>(plugin_function(chart_plugin_function))(&chart, &text, chart_layout)) {
+  if (!reinterpret_cast<DrawSvg>(plugin_function(kChartPluginFunction))(&chart, &text, kChartLayout)) {
     throw base::Failure(base::ExitCode::bug, "drawing failed: " + text);
   }
   return text;
@@ -102,7 +102,7 @@ std::string draw_picture(const Chart& chart, const std::string& file) {
     return svg;
   }
   std::string png;
-  if (!reinterpret_cast<SvgToPng>(plugin_function(png_plugin_function))(&svg, &png)) {
+  if (!reinterpret_cast<SvgToPng>(plugin_function(kPngPluginFunction))(&svg, &png)) {
     throw base::Failure(base::ExitCode::bug, "drawing failed: " + png);
   }
   return png;

@@ -25,7 +25,7 @@ struct FieldAxis {
 };
 /// Returns the axis for a yaw angle.
 FieldAxis field_axis(double yaw_rad);
-/// Same conversion for a caller that keeps the axis while the robot does not turn.
+/// Converts a motion from the field to the local frame, with an axis that the caller keeps while the robot does not turn.
 BodyMotion local_motion(const BodyConfig& body, const FieldAxis& axis, const BodyVelocity& velocity_global,
                         const BodyAcceleration& acceleration_global);
 

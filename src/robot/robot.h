@@ -150,7 +150,7 @@ struct RobotParameterSpec {
 };
 std::span<const RobotParameterSpec> robot_parameter_specs();
 
-/// The same for the values of one [[friction.heading.wheel]].
+/// Declaration of one value of a [[friction.heading.wheel]].
 struct WheelParameterSpec {
   base::ParameterSpec spec;
   double HeadingWheel::*value = nullptr;

@@ -26,7 +26,7 @@ inline Lanes exponential(const Lanes& x) {
 inline Lanes soft_step(const Lanes& x) {
   return x.unaryExpr([](double each) { return soft_step(each); });
 }
-/// The choice is the same in all samples.
+/// Returns the index of a parameter that is a choice, which all samples share.
 inline int chosen(const Lanes& parameter) { return static_cast<int>(parameter[0]); }
 
 }  // namespace heatsoak::thermal

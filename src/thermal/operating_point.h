@@ -73,10 +73,10 @@ enum class WorstCase {
 
 /// Value of an input that the guard assumes for a motor without power.
 enum class WithoutPower {
-  zero,          ///< the motor is at rest
-  hottest_air,   ///< the hottest declared air
-  winding_limit, ///< the winding limit, for the temperature of another motor
-  largest        ///< the largest of its possible values
+  zero,           ///< the motor is at rest
+  hottest_air,    ///< the hottest declared air
+  winding_limit,  ///< the winding limit, for the temperature of another motor
+  largest         ///< the largest of its possible values
 };
 
 /// Quantity as an input of the guard in the firmware. The constructor makes each row state the value without power.
@@ -86,7 +86,8 @@ struct FirmwareInput {
   WithoutPower without_power;
   WorstCase worst;
 
-  constexpr FirmwareInput(std::string_view field_of, std::string_view meaning_of, WithoutPower assumed, WorstCase worst_of = WorstCase::searched)
+  constexpr FirmwareInput(std::string_view field_of, std::string_view meaning_of, WithoutPower assumed,
+                          WorstCase worst_of = WorstCase::searched)
       : field(field_of), meaning(meaning_of), without_power(assumed), worst(worst_of) {}
 };
 

@@ -18,9 +18,10 @@ using testing::VariantWith;
 TEST(Jobs, AFittedRunIsRefusedAndItsPredictionSaysSo) {
   const std::string bench = (kSource / "reports/soak/bench.csv").string();
   const std::string match = (kSource / "reports/soak/match_1.csv").string();
-  CalibrationJob job{motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), recording::read_named_logs({bench}, {}, {}), {}};
+  CalibrationJob job{
+      motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), recording::read_usable_logs({bench}, {}, {}), {}};
   const motor::Motor calibrated = run_calibration(job).motor;
-  const PredictionAnswer both = run_prediction({calibrated, recording::read_named_logs({}, {bench, match}, {})});
+  const PredictionAnswer both = run_prediction({calibrated, recording::read_usable_logs({}, {bench, match}, {})});
   EXPECT_EQ(both.prediction.runs.size(), 2U);
   EXPECT_THAT(both.warnings, Contains(VariantWith<FittedRun>(Field(&FittedRun::recording, "bench"))));
   EXPECT_THAT(both.warnings, Not(Contains(VariantWith<FittedRun>(Field(&FittedRun::recording, "match_1")))));
@@ -34,7 +35,7 @@ TEST(Jobs, AFittedRunIsRefusedAndItsPredictionSaysSo) {
 }
 
 TEST(Jobs, AllLogsWithoutHeatAreReportedAtOnce) {
-  const recording::NamedLogs logs = recording::read_named_logs({(kSource / "reports/soak/bench.csv").string()}, {}, {});
+  const recording::NamedLogs logs = recording::read_usable_logs({(kSource / "reports/soak/bench.csv").string()}, {}, {});
   recording::Recording without_heat = logs.fitted[0];
   std::erase_if(without_heat.channels, [](const recording::Channel& channel) { return channel.quantity.key != "winding_C"; });
   recording::Recording cut = logs.fitted[0].slice(0, 5);

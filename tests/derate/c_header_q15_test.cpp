@@ -359,8 +359,8 @@ TEST(Q15Lines, RoundingIsBounded) {
   const integer_form::IntegerLines lines = integer_form::integer_lines(ecx_derating(), "motor");
   ASSERT_EQ(lines.rate_K_per_s.size(), 2U);
   for (const integer_form::FixedPoint& rate : lines.rate_K_per_s) {
-    EXPECT_GT(rate.absolute, 0.0);
-    EXPECT_LT(rate.absolute, 5e-3);
+    EXPECT_GT(rate.most_error, 0.0);
+    EXPECT_LT(rate.most_error, 5e-3);
     EXPECT_LT(std::ldexp(std::max(std::abs(rate.low), std::abs(rate.high)), rate.bits), std::ldexp(1.0, 30));
   }
 }

@@ -245,7 +245,8 @@ TEST(WordsOfDiagnosis, MissingSignalsHaveTheAssumptionOfTheirRow) {
   const auto words = [](std::vector<Signal> signals) {
     return words_of(diagnosis::DiagnosisFinding(diagnosis::SignalsMissing{std::move(signals), "loss"}));
   };
-  EXPECT_EQ(words({Signal::current, Signal::speed}), "no log has current_A and speed_rad_per_s, on which loss depends; the value 0 is used");
+  EXPECT_EQ(words({Signal::current, Signal::speed}),
+            "no log has current_A and speed_rad_per_s, on which loss depends; the value 0 is used");
   EXPECT_EQ(words({Signal::neighbour_temperature}),
             "no log has neighbour_C, on which loss depends; the temperature of the neighbour is treated as unknown");
 }

@@ -15,6 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Reads logs and throws the problems of all of them.
+NamedLogs read_all(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice) {
+  NamedLogs logs = read_usable_logs(fitted, held_out, choice);
+  logs.unread.throw_if_any();
+  return logs;
+}
+
 class NamedLogsTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -35,29 +42,29 @@ class NamedLogsTest : public testing::Test {
 };
 
 TEST_F(NamedLogsTest, EqualNamesGetTheirFoldersAndFittedOnesIgnoreTheHoldOut) {
-  const NamedLogs both = read_named_logs({log("monday"), log("tuesday")}, {}, {});
+  const NamedLogs both = read_all({log("monday"), log("tuesday")}, {}, {});
   EXPECT_EQ(both.fitted[0].name, "monday/run");
   EXPECT_EQ(both.fitted[1].name, "tuesday/run");
-  const NamedLogs apart = read_named_logs({log("monday")}, {log("tuesday")}, {});
+  const NamedLogs apart = read_all({log("monday")}, {log("tuesday")}, {});
   EXPECT_EQ(apart.fitted[0].name, "run");
   EXPECT_EQ(apart.held_out[0].name, "tuesday/run");
 }
 
 TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
-  const NamedLogs parts = read_named_logs({log("monday") + "@0-60%"}, {log("monday") + "@60-100%"}, {});
+  const NamedLogs parts = read_all({log("monday") + "@0-60%"}, {log("monday") + "@60-100%"}, {});
   EXPECT_EQ(parts.fitted[0].name, "run");
   EXPECT_EQ(parts.held_out[0].name, "run");
   EXPECT_NEAR(parts.fitted[0].time_s.back(), 60.0, 1.0);
   EXPECT_NEAR(parts.held_out[0].time_s.front(), 60.0, 1.0);
   EXPECT_EQ(parts.readings.size(), 2U);
   EXPECT_TRUE(parts.fitted[0].blocking_of_whole);
-  EXPECT_THROW(read_named_logs({log("monday") + "@70-20%"}, {}, {}), base::Failure);
+  EXPECT_THROW(read_all({log("monday") + "@70-20%"}, {}, {}), base::Failure);
 }
 
 TEST_F(NamedLogsTest, APartThatIsNoneOrHasNoRowsIsRefused) {
   for (const std::string part : {"@0-nan%", "@nan-50%", "@0-inf%", "@x-50%", "@50.1-50.2%"}) {
     try {
-      read_named_logs({log("monday") + part}, {}, {});
+      read_all({log("monday") + part}, {}, {});
       FAIL() << part;
     } catch (const base::Failure& failure) {
       EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
@@ -77,7 +84,7 @@ TEST_F(NamedLogsTest, FailuresOfUnreadLogsAreKeptBesideTheOthers) {
 
 TEST_F(NamedLogsTest, ProblemsOfAllLogsAreReportedOnce) {
   try {
-    read_named_logs({log("sunday"), log("monday"), log("monday") + "@70-20%"}, {log("sunday"), log("saturday")}, {});
+    read_all({log("sunday"), log("monday"), log("monday") + "@70-20%"}, {log("sunday"), log("saturday")}, {});
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);

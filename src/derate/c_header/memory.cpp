@@ -314,7 +314,8 @@ std::string memory_functions(const Source& source, unsigned signature) {
       {"@", source.prefix}};
   return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n#define {0}_MOST_HEATING_STEPS {3}\n",
                      source.capital, signature, kMostCoolingSteps, kMostHeatingSteps) +
-         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
+         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + replaced(kCool, words) +
+         replaced(kUnsaved, words) + replaced(kRestore, words);
 }
 
 }  // namespace heatsoak::derate::c_header

@@ -66,7 +66,7 @@ std::vector<std::int64_t> widened(const std::vector<Number>& values) {
 /// Returns the heat that is added to a node's rate, in units of that rate, so that rounding never makes the node cooler.
 std::int64_t heat_for_rounding(const FixedPoint& rate) {
   const double most = std::max(std::abs(rate.low), std::abs(rate.high));
-  return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.absolute + std::ldexp(most, -29), rate.bits))) + 1;
+  return static_cast<std::int64_t>(std::ceil(std::ldexp(rate.most_error + std::ldexp(most, -29), rate.bits))) + 1;
 }
 
 /// Returns how far, in K, the temperatures may lie above the exact ones because of the heat added for rounding, over a warm-up of 4 h.
@@ -88,7 +88,7 @@ double temperature_excess_K(const Derating& derating, const IntegerLines& lines)
       run.run(inputs, rate);
       for (std::size_t node = 0; node < nodes; ++node) {
         const FixedPoint& fixed = lines.rate_K_per_s[node];
-        const double extra = form == 0 ? 0.0 : std::ldexp(static_cast<double>(heat_for_rounding(fixed)), -fixed.bits) + fixed.absolute;
+        const double extra = form == 0 ? 0.0 : std::ldexp(static_cast<double>(heat_for_rounding(fixed)), -fixed.bits) + fixed.most_error;
         state_C[form][node] += step_s * (rate[node] + extra);
       }
     }
@@ -371,8 +371,8 @@ std::string write_c_header_q15(const Derating& derating) {
       fmt::format("#define {0}_STORED_PER_K INT64_C({1})\n#define {0}_STARTED 0x48454154u\n#define {0}_PERIOD_US INT64_C({2})\n", capital,
                   std::int64_t{1} << kStoredBits, period_us) +
       fmt::format("#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_SAVED_SIZE {2}\n#define {0}_MOST_COOLING_STEPS {3}\n"
-                  "#define {0}_MOST_HEATING_STEPS {4}\n\n", capital,
-                  guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps, kMostHeatingSteps) +
+                  "#define {0}_MOST_HEATING_STEPS {4}\n\n",
+                  capital, guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps, kMostHeatingSteps) +
       structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
       (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
       changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +

@@ -83,24 +83,24 @@ class Writer {
   }
 
   void add_constant(int place, double number) {
-    FixedPoint made{.low = number, .high = number, .bits = bits_for(number, number), .absolute = 0.0};
-    made.absolute = 0.5 * unit(made.bits);
+    FixedPoint made{.low = number, .high = number, .bits = bits_for(number, number), .most_error = 0.0};
+    made.most_error = 0.5 * unit(made.bits);
     set(place, made, fmt::format("{}", static_cast<std::int64_t>(std::llround(std::ldexp(number, made.bits)))));
   }
 
   void add_input(int place, std::size_t input) {
     if (input >= observed::kSignalCount) {
       const double coldest_C = derating_.options.coldest_ambient_C - 1.0;
-      return set(place, {.low = coldest_C, .high = double{kMostState_C}, .bits = kStateBits, .absolute = unit(kStateBits)},
+      return set(place, {.low = coldest_C, .high = double{kMostState_C}, .bits = kStateBits, .most_error = unit(kStateBits)},
                  fmt::format("state_C[{}]", input - observed::kSignalCount));
     }
     const auto signal = static_cast<observed::Signal>(input);
     const PlausibleRange validated = plausible_range(derating_, signal);
-    FixedPoint made{.low = validated.low, .high = validated.high, .bits = bits_for(validated.low, validated.high), .absolute = 0.0};
+    FixedPoint made{.low = validated.low, .high = validated.high, .bits = bits_for(validated.low, validated.high), .most_error = 0.0};
     // The factor 2^bits/1000 has 30 bits and its own shift.
     const double per_thousandth = std::ldexp(1.0 / kThousandths_ratio, made.bits);
     const int shift = bits_for(per_thousandth, per_thousandth);
-    made.absolute = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);
+    made.most_error = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);
     set(place, made,
         fmt::format("{}_product(input->{}, {}, {})", prefix_, integer_name(signal),
                     static_cast<std::int64_t>(std::llround(std::ldexp(per_thousandth, shift))), power_of_two(shift)));
@@ -123,9 +123,10 @@ class Writer {
     FixedPoint made{.low = sign > 0.0 ? a.low + b.low : a.low - b.high,
                     .high = sign > 0.0 ? a.high + b.high : a.high - b.low,
                     .bits = 0,
-                    .absolute = 0.0};
+                    .most_error = 0.0};
     made.bits = std::min({a.bits, b.bits, bits_for(made.low, made.high)});
-    made.absolute = a.absolute + b.absolute + (a.bits > made.bits ? unit(made.bits) : 0.0) + (b.bits > made.bits ? unit(made.bits) : 0.0);
+    made.most_error =
+        a.most_error + b.most_error + (a.bits > made.bits ? unit(made.bits) : 0.0) + (b.bits > made.bits ? unit(made.bits) : 0.0);
     set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(*step.right, made.bits)));
   }
 
@@ -133,14 +134,14 @@ class Writer {
     const FixedPoint& a = value(step.left);
     const FixedPoint& b = value(*step.right);
     const auto corners = {a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high};
-    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .absolute = 0.0};
+    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .most_error = 0.0};
     if (step.left == step.right) {
       made.low = 0.0;
     }
     made.bits = std::min(bits_for(made.low, made.high), a.bits + b.bits);
     const double most_a = std::max(std::abs(a.low), std::abs(a.high));
     const double most_b = std::max(std::abs(b.low), std::abs(b.high));
-    made.absolute = most_a * b.absolute + most_b * a.absolute + a.absolute * b.absolute + unit(made.bits);
+    made.most_error = most_a * b.most_error + most_b * a.most_error + a.most_error * b.most_error + unit(made.bits);
     set(place, made,
         fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(a.bits + b.bits - made.bits)));
   }
@@ -148,19 +149,19 @@ class Writer {
   void add_quotient(int place, const thermal::Formula::Step& step) {
     const FixedPoint& a = value(step.left);
     const FixedPoint& b = value(*step.right);
-    const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.absolute;
+    const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.most_error;
     if (b.low * b.high <= 0.0 || least <= 0.0) {
       throw refusal("a law divides by a quantity that may be 0");
     }
     const auto corners = {a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high};
-    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .absolute = 0.0};
+    FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .most_error = 0.0};
     const double most = std::max(std::abs(made.low), std::abs(made.high));
     made.bits = std::min(bits_for(made.low, made.high), a.bits - b.bits + kNumberBits);
     const int shift = made.bits + b.bits - a.bits;
     if (shift < 0) {
       throw refusal("a law divides numbers of too different sizes");
     }
-    made.absolute = (a.absolute + most * b.absolute) / least + unit(made.bits);
+    made.most_error = (a.most_error + most * b.most_error) / least + unit(made.bits);
     set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(shift)));
   }
 

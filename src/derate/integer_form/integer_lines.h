@@ -13,12 +13,12 @@ inline constexpr int kStateBits = 20;
 /// Inputs are integers in thousandths: mA, mrad/s, 0.001 °C.
 inline constexpr double kThousandths_ratio = 1000.0;
 
-/// A value n·2^-bits with |n| < 2^30. `absolute` bounds its error for all plausible inputs.
+/// A value n·2^-bits with |n| < 2^30.
 struct FixedPoint {
   double low = 0.0;  ///< bounds of the value
   double high = 0.0;
   int bits = 0;
-  double absolute = 0.0;
+  double most_error = 0.0;  ///< bound of the error for all plausible inputs
 };
 
 struct IntegerLines {

@@ -17,13 +17,13 @@ struct QuantisedTable {
   std::vector<std::int32_t> speed_mrad_per_s;
   std::vector<std::int32_t> stator_mC;
   std::vector<std::int32_t> winding_mC;
-  std::vector<std::int16_t> square;
+  std::vector<std::int16_t> square;  ///< squares of the allowed currents in units of unit_mA2, in the order of CurrentTable::square_A2
   std::uint32_t unit_mA2 = 1;
   std::int32_t most_current_mA = 0;
   std::int32_t straight_below_mA = 1;
   std::int32_t most_speed_mrad_per_s = 0;
   std::int32_t no_current_speed_mrad_per_s = 1;
-  std::int32_t winding_per_stator_K = 1;
+  std::int32_t winding_per_stator_K = 1;  ///< as CurrentTable::winding_per_stator_K, a ratio in K per K
 
   [[nodiscard]] heatsoak_integer_table table() const;
   /// Returns the same table in A, rad/s and °C, without its bound. Its currents are those of the integers before they are rounded down to
@@ -31,8 +31,8 @@ struct QuantisedTable {
   [[nodiscard]] CurrentTable in_units() const;
 };
 
-/// Returns the largest relative shortfall of the quantised table against `exact` where that allows at least straight_below_A, on a grid of
-/// ten speeds and of temperatures 0.5 K apart.
+/// Returns the largest relative shortfall of the quantised table against `exact` where that allows at least its straight_below_A, on a
+/// grid of ten speeds and of temperatures 0.5 K apart.
 double quantised_shortfall_ratio(const CurrentTable& exact, const QuantisedTable& quantised);
 
 }  // namespace heatsoak::derate::integer_form

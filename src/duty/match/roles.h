@@ -8,8 +8,9 @@
 
 namespace heatsoak::duty {
 
-/// The same game played in each role, in the order of kRoleNames.
+/// Loads of one game, one per role in the order of kRoleNames.
 using RoleLoads = std::array<MatchLoad, kRoleNames.size()>;
+/// Plays the game of `seed` once in each role.
 RoleLoads play_roles(const MatchInputs& inputs, const robot::Robot& robot, std::uint64_t seed, Planner planner,
                      const base::Progress& progress = {});
 

@@ -13,7 +13,7 @@
 
 namespace heatsoak::present {
 
-/// Adds one log to the document. `recording` holds at least the data that the assessment keeps.
+/// Adds one log to the document. `recording`: the rows of Assessment::condensed(), or the whole log.
 void add_log(Document& document, const recording::Recording& recording, const recording::RecordingReport& report,
              const recording::DataQuality& quality);
 

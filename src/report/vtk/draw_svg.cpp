@@ -45,17 +45,17 @@ namespace {
 using Color = std::array<unsigned char, 3>;
 
 /// Palette of Okabe and Ito. Vermilion comes late because limits are red, yellow last because the paper is white.
-constexpr std::array<Color, 8> palette{{{0x00, 0x72, 0xB2},
-                                        {0xE6, 0x9F, 0x00},
-                                        {0x00, 0x9E, 0x73},
-                                        {0xCC, 0x79, 0xA7},
-                                        {0x56, 0xB4, 0xE9},
-                                        {0x00, 0x00, 0x00},
-                                        {0xD5, 0x5E, 0x00},
-                                        {0xF0, 0xE4, 0x42}}};
-constexpr unsigned char band_opacity = 51;  // 20 %
+constexpr std::array<Color, 8> kPalette{{{0x00, 0x72, 0xB2},
+                                         {0xE6, 0x9F, 0x00},
+                                         {0x00, 0x9E, 0x73},
+                                         {0xCC, 0x79, 0xA7},
+                                         {0x56, 0xB4, 0xE9},
+                                         {0x00, 0x00, 0x00},
+                                         {0xD5, 0x5E, 0x00},
+                                         {0xF0, 0xE4, 0x42}}};
+constexpr unsigned char kBandOpacity = 51;  // 20 %
 
-Color palette_color(int index) { return palette[static_cast<unsigned>(index) % palette.size()]; }
+Color palette_color(int index) { return kPalette[static_cast<unsigned>(index) % kPalette.size()]; }
 
 void set_pen(vtkPen* pen, const Color& color, double width_px, bool is_dashed) {
   pen->SetColor(color[0], color[1], color[2]);
@@ -118,7 +118,7 @@ void add_area(vtkChartXY* chart, const std::vector<BandPoint>& points, const Col
 /// band.
 void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color, bool is_dashed) {
   for (const std::vector<BandPoint>& ripple : piece.envelopes) {
-    for (const auto& [edge, width_px] : {std::pair{&BandPoint::low_px, minima_width_px}, std::pair{&BandPoint::high_px, curve_width_px}}) {
+    for (const auto& [edge, width_px] : {std::pair{&BandPoint::low_px, kMinimaWidth_px}, std::pair{&BandPoint::high_px, kCurveWidth_px}}) {
       std::vector<CurvePoint> line;
       std::ranges::transform(ripple, std::back_inserter(line), [edge = edge](const BandPoint& at) {
         return CurvePoint{at.x_px, at.*edge};
@@ -127,7 +127,7 @@ void add_curve(vtkChartXY* chart, const RippledPiece& piece, const Color& color,
     }
   }
   for (const std::vector<CurvePoint>& line : piece.lines) {
-    add_line(chart, line, color, curve_width_px, is_dashed);
+    add_line(chart, line, color, kCurveWidth_px, is_dashed);
   }
 }
 
@@ -137,10 +137,10 @@ void add_bar(vtkChartXY* chart, const RangeBar& bar) {
   const auto across = [&](double y_px, double length_px, double width_px) {
     add_line(chart, {{bar.x_px - 0.5 * length_px, y_px}, {bar.x_px + 0.5 * length_px, y_px}}, color, width_px, false);
   };
-  add_line(chart, {{bar.x_px, bar.low_px}, {bar.x_px, bar.high_px}}, color, curve_width_px, false);
-  across(bar.low_px, range_cap_px, curve_width_px);
-  across(bar.high_px, range_cap_px, curve_width_px);
-  across(bar.mark_px, marker_px, marker_px);
+  add_line(chart, {{bar.x_px, bar.low_px}, {bar.x_px, bar.high_px}}, color, kCurveWidth_px, false);
+  across(bar.low_px, kRangeCap_px, kCurveWidth_px);
+  across(bar.high_px, kRangeCap_px, kCurveWidth_px);
+  across(bar.mark_px, kMarker_px, kMarker_px);
 }
 
 /// The axis counts pixels, so that VTK's transform of the plots is the identity. An SVG matrix with unequal scales would distort pens and
@@ -156,8 +156,8 @@ void set_axis(vtkAxis* axis, const AxisScale& scale, const std::vector<AxisTick>
   axis->SetRange(scale.low_px, scale.high_px);
   axis->SetCustomTickPositions(positions, labels);
   axis->SetTitle("");
-  axis->GetLabelProperties()->SetFontSize(tick_style.size_px);
-  axis->GetLabelProperties()->SetColor(tick_style.color[0] / 255.0, tick_style.color[1] / 255.0, tick_style.color[2] / 255.0);
+  axis->GetLabelProperties()->SetFontSize(kTickStyle.size_px);
+  axis->GetLabelProperties()->SetColor(kTickStyle.color[0] / 255.0, kTickStyle.color[1] / 255.0, kTickStyle.color[2] / 255.0);
   axis->GetPen()->SetColor(0x77, 0x77, 0x77);
   axis->GetGridPen()->SetColor(0xE4, 0xE4, 0xE4);
 }
@@ -176,13 +176,13 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
   set_axis(chart->GetAxis(vtkAxis::LEFT), up, place.y_ticks);
   for (const ChartBand& band : panel.bands) {
     for (const std::vector<BandPoint>& piece : reduce(band, across, up)) {
-      add_area(chart, piece, palette_color(band.color_index), band_opacity);
+      add_area(chart, piece, palette_color(band.color_index), kBandOpacity);
     }
   }
   for (const ChartCurve& curve : panel.curves) {
     if (curve.dots) {
-      for (const std::vector<CurvePoint>& piece : markers(curve, across, up, marker_px)) {
-        add_line(chart, piece, palette_color(curve.color_index), marker_px, false);
+      for (const std::vector<CurvePoint>& piece : markers(curve, across, up, kMarker_px)) {
+        add_line(chart, piece, palette_color(curve.color_index), kMarker_px, false);
       }
       continue;
     }
@@ -200,7 +200,7 @@ void add_panel(vtkContextScene* scene, const ChartPanel& panel, const PanelPlace
     }
     const ChartCurve line{.name = "", .x = {across.range.low, across.range.high}, .y = {level.y, level.y}};
     for (const std::vector<CurvePoint>& piece : reduce(line, across, up)) {
-      add_line(chart, piece, std::to_array(limit_color), 1.5F, true);
+      add_line(chart, piece, std::to_array(kLimitColor), 1.5F, true);
     }
   }
   scene->AddItem(chart);
@@ -230,20 +230,20 @@ class Lettering : public vtkContextItem {
   static void paint(vtkContext2D* painter, const LegendSwatch& swatch) {
     const Color color = palette_color(swatch.color_index);
     const auto left_px = static_cast<float>(swatch.x_px);
-    const auto right_px = static_cast<float>(swatch.x_px + swatch_width_px);
+    const auto right_px = static_cast<float>(swatch.x_px + kSwatchWidth_px);
     const auto y_px = static_cast<float>(swatch.y_px);
     if (swatch.is_band) {
       // A quad strip, because VTK outlines quads and polygons.
       float corners[] = {left_px, y_px - 5, left_px, y_px + 5, right_px, y_px - 5, right_px, y_px + 5};
-      painter->GetBrush()->SetColor(color[0], color[1], color[2], band_opacity);
+      painter->GetBrush()->SetColor(color[0], color[1], color[2], kBandOpacity);
       painter->DrawQuadStrip(corners, 4);
     } else if (swatch.is_dots) {
       const float middle_px = 0.5F * (left_px + right_px);
-      const float half_px = 0.5F * static_cast<float>(marker_px);
-      set_pen(painter->GetPen(), color, marker_px, false);
+      const float half_px = 0.5F * static_cast<float>(kMarker_px);
+      set_pen(painter->GetPen(), color, kMarker_px, false);
       painter->DrawLine(middle_px - half_px, y_px, middle_px + half_px, y_px);
     } else {
-      set_pen(painter->GetPen(), color, curve_width_px, swatch.is_dashed);
+      set_pen(painter->GetPen(), color, kCurveWidth_px, swatch.is_dashed);
       painter->DrawLine(left_px, y_px, right_px, y_px);
     }
   }
@@ -339,8 +339,8 @@ std::string draw(const Chart& chart) {
 
 extern "C" __attribute__((visibility("default"))) bool heatsoak_draw_chart(const heatsoak::report::Chart* chart, std::string* text,
                                                                            std::size_t layout) {
-  if (layout != heatsoak::report::chart_layout) {
-    *text = std::string(heatsoak::report::chart_plugin_file) + " is of another build than the program; build or install both again";
+  if (layout != heatsoak::report::kChartLayout) {
+    *text = std::string(heatsoak::report::kChartPluginFile) + " is of another build than the program; build or install both again";
     return false;
   }
   try {

@@ -12,22 +12,22 @@
 namespace heatsoak::report {
 namespace {
 
-constexpr TextStyle title_style{.size_px = 20, .is_bold = true, .color = {0x11, 0x11, 0x11}};
-constexpr TextStyle subtitle_style{.size_px = 13, .is_bold = false, .color = {0x6B, 0x6B, 0x6B}};
-constexpr TextStyle panel_title_style{.size_px = 14, .is_bold = true};
-constexpr TextStyle label_style{.size_px = 13};
-constexpr TextStyle limit_style{.size_px = 12, .is_bold = false, .color = {limit_color[0], limit_color[1], limit_color[2]}};
+constexpr TextStyle kTitleStyle{.size_px = 20, .is_bold = true, .color = {0x11, 0x11, 0x11}};
+constexpr TextStyle kSubtitleStyle{.size_px = 13, .is_bold = false, .color = {0x6B, 0x6B, 0x6B}};
+constexpr TextStyle kPanelTitleStyle{.size_px = 14, .is_bold = true};
+constexpr TextStyle kLabelStyle{.size_px = 13};
+constexpr TextStyle kLimitStyle{.size_px = 12, .is_bold = false, .color = {kLimitColor[0], kLimitColor[1], kLimitColor[2]}};
 
-constexpr double margin_px = 24.0;
-constexpr double label_line_px = 18.0;
-constexpr double legend_gap_px = 4.0;
-constexpr double tick_row_px = 26.0;
-constexpr double tick_distance_x_px = 70.0;  // minimum distance
-constexpr double tick_distance_y_px = 36.0;
-constexpr double least_plot_height_px = 60.0;
-constexpr double headroom = 0.05;
-constexpr double range_distance_px = 14.0;  // between two bars
-constexpr double least_ranges_px = 84.0;    // room for the label above the bars
+constexpr double kMargin_px = 24.0;
+constexpr double kLabelLine_px = 18.0;
+constexpr double kLegendGap_px = 4.0;
+constexpr double kTickRow_px = 26.0;
+constexpr double kTickDistanceX_px = 70.0;  // minimum distance
+constexpr double kTickDistanceY_px = 36.0;
+constexpr double kLeastPlotHeight_px = 60.0;
+constexpr double kHeadroom = 0.05;
+constexpr double kRangeDistance_px = 14.0;  // between two bars
+constexpr double kLeastRanges_px = 84.0;    // room for the label above the bars
 
 struct LegendEntry {
   std::string name;
@@ -107,7 +107,7 @@ AxisRange y_range(const ChartPanel& panel) {
       range.include(level.y);
     }
   }
-  return range.with_headroom(headroom);
+  return range.with_headroom(kHeadroom);
 }
 
 /// Rectangle; y counts downwards.
@@ -144,13 +144,13 @@ bool is_taken(const Box& box, const std::vector<Box>& names, const std::vector<s
 /// Moves `box` to the left until it is free; returns nothing if it does not become free.
 std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box>& names,
                               const std::vector<std::vector<CurvePoint>>& curves) {
-  constexpr double step_px = 10.0;
+  constexpr double kStep_px = 10.0;
   while (box.left_px > left_end_px) {
     if (!is_taken(box, names, curves)) {
       return box;
     }
-    box.left_px -= step_px;
-    box.right_px -= step_px;
+    box.left_px -= kStep_px;
+    box.right_px -= kStep_px;
   }
   return std::nullopt;
 }
@@ -184,7 +184,7 @@ class PageBuilder {
     const double legend_top_px = y_px_ + panel_title_height_px(chart_.panels.empty() ? "" : chart_.panels[0].title);
     legend_bottom_px_ = legend_top_px;
     for (const LegendEntry& entry : is_legend_on_top_ ? std::vector<LegendEntry>{} : entries_) {
-      legend_bottom_px_ += static_cast<double>(legend_lines(entry).size()) * label_line_px + legend_gap_px;
+      legend_bottom_px_ += static_cast<double>(legend_lines(entry).size()) * kLabelLine_px + kLegendGap_px;
     }
     for (const ChartPanel& panel : chart_.panels) {
       add_panel(panel);
@@ -198,15 +198,15 @@ class PageBuilder {
 
  private:
   void add_heading() {
-    const double width_px = page_.width_px - 2.0 * margin_px;
+    const double width_px = page_.width_px - 2.0 * kMargin_px;
     y_px_ = 16.0;
-    for (const std::string& line : wrapped(printable(chart_.title), title_style, width_px)) {
+    for (const std::string& line : wrapped(printable(chart_.title), kTitleStyle, width_px)) {
       y_px_ += 26.0;
-      add({.text = line, .x_px = margin_px, .y_px = y_px_ - 3.0, .style = title_style});
+      add({.text = line, .x_px = kMargin_px, .y_px = y_px_ - 3.0, .style = kTitleStyle});
     }
-    for (const std::string& line : wrapped(printable(chart_.subtitle), subtitle_style, width_px)) {
-      y_px_ += label_line_px;
-      add({.text = line, .x_px = margin_px, .y_px = y_px_, .style = subtitle_style});
+    for (const std::string& line : wrapped(printable(chart_.subtitle), kSubtitleStyle, width_px)) {
+      y_px_ += kLabelLine_px;
+      add({.text = line, .x_px = kMargin_px, .y_px = y_px_, .style = kSubtitleStyle});
     }
     y_px_ += 10.0;
   }
@@ -217,28 +217,28 @@ class PageBuilder {
     double tick_label_px = 0.0;
     for (const ChartPanel& panel : chart_.panels) {
       y_label_lines = std::max(y_label_lines, y_label(panel).size());
-      for (const AxisTick& tick : ticks(y_range(panel), plot_height_px(panel) / tick_distance_y_px)) {
-        tick_label_px = std::max(tick_label_px, text_width_px(tick.label, tick_style));
+      for (const AxisTick& tick : ticks(y_range(panel), plot_height_px(panel) / kTickDistanceY_px)) {
+        tick_label_px = std::max(tick_label_px, text_width_px(tick.label, kTickStyle));
       }
     }
-    y_label_x_px_ = margin_px + label_style.size_px * 0.75;
-    left_px_ = std::ceil(margin_px + static_cast<double>(y_label_lines) * label_line_px + tick_label_px + 14.0);
+    y_label_x_px_ = kMargin_px + kLabelStyle.size_px * 0.75;
+    left_px_ = std::ceil(kMargin_px + static_cast<double>(y_label_lines) * kLabelLine_px + tick_label_px + 14.0);
 
     entries_ = legend_entries(chart_);
     double legend_px = 0.0;
     for (const LegendEntry& entry : entries_) {
       for (const std::string& line : legend_lines(entry)) {
-        legend_px = std::max(legend_px, text_width_px(line, label_style));
+        legend_px = std::max(legend_px, text_width_px(line, kLabelStyle));
       }
     }
-    right_px_ = page_.width_px - margin_px;
+    right_px_ = page_.width_px - kMargin_px;
     // A wide legend beside several panels, or a single entry beside any, would leave most of its column empty.
     constexpr double kBroad_share = 0.27;
     const bool wastes_column =
-        entries_.size() == 1 || (chart_.panels.size() > 1 && legend_px + swatch_width_px > kBroad_share * page_.width_px);
+        entries_.size() == 1 || (chart_.panels.size() > 1 && legend_px + kSwatchWidth_px > kBroad_share * page_.width_px);
     is_legend_on_top_ = wastes_column && column_width_px() <= right_px_ - left_px_;
     if (!entries_.empty() && !is_legend_on_top_) {
-      legend_x_px_ = std::floor(right_px_ - legend_px - swatch_width_px - 8.0);
+      legend_x_px_ = std::floor(right_px_ - legend_px - kSwatchWidth_px - 8.0);
       right_px_ = legend_x_px_ - 22.0;
     }
     right_px_ = std::max(right_px_, left_px_ + 60.0);
@@ -248,7 +248,7 @@ class PageBuilder {
     const double title_px = panel_title_height_px(panel.title);
     const double plot_px = plot_height_px(panel);
     if (!panel.title.empty()) {
-      add({.text = printable(panel.title), .x_px = left_px_, .y_px = y_px_ + 18.0, .style = panel_title_style});
+      add({.text = printable(panel.title), .x_px = left_px_, .y_px = y_px_ + 18.0, .style = kPanelTitleStyle});
     }
     y_px_ += title_px;
     const double top_px = y_px_;
@@ -259,13 +259,13 @@ class PageBuilder {
     place.horizontal = {of_curves, left_px_, right_px_};
     place.horizontal.range.high += (of_curves.high - of_curves.low) * ranges_px() / curves_px;
     place.vertical = {y_range(panel), bottom_px, top_px};
-    place.x_ticks = ticks(of_curves, curves_px / tick_distance_x_px);
+    place.x_ticks = ticks(of_curves, curves_px / kTickDistanceX_px);
     add_ranges(panel, left_px_ + curves_px, top_px, place);
-    place.y_ticks = ticks(place.vertical.range, plot_px / tick_distance_y_px);
+    place.y_ticks = ticks(place.vertical.range, plot_px / kTickDistanceY_px);
     add_y_label(panel, (top_px + bottom_px) / 2.0);
     add_level_names(panel, place);
     page_.panels.push_back(std::move(place));
-    y_px_ = bottom_px + tick_row_px;
+    y_px_ = bottom_px + kTickRow_px;
   }
 
   /// Returns the width of the widest group of bars; 0 if no panel has ranges.
@@ -274,7 +274,7 @@ class PageBuilder {
     for (const ChartPanel& panel : chart_.panels) {
       most = std::max(most, panel.ranges.size());
     }
-    return most == 0 ? 0.0 : std::max(static_cast<double>(most) * range_distance_px + range_distance_px, least_ranges_px);
+    return most == 0 ? 0.0 : std::max(static_cast<double>(most) * kRangeDistance_px + kRangeDistance_px, kLeastRanges_px);
   }
 
   /// Places the bars side by side to the right of the curves.
@@ -283,29 +283,29 @@ class PageBuilder {
       return;
     }
     const double middle_px = 0.5 * (left_px + right_px_);
-    double x_px = middle_px - 0.5 * range_distance_px * (static_cast<double>(panel.ranges.size()) - 1.0);
+    double x_px = middle_px - 0.5 * kRangeDistance_px * (static_cast<double>(panel.ranges.size()) - 1.0);
     for (const ChartRange& each : panel.ranges) {
       place.bars.push_back(
           {x_px, place.vertical.to_px(each.low), place.vertical.to_px(each.high), place.vertical.to_px(each.y), each.color_index});
-      x_px += range_distance_px;
+      x_px += kRangeDistance_px;
     }
     place.x_ticks.push_back({x_range(chart_).high, ""});  // a line between curves and bars
     // Below the axis the label would read as the unit of the last tick.
-    add({.text = printable(panel.range_label), .x_px = middle_px, .y_px = top_px - 5.0, .style = tick_style, .anchor = Anchor::middle});
+    add({.text = printable(panel.range_label), .x_px = middle_px, .y_px = top_px - 5.0, .style = kTickStyle, .anchor = Anchor::middle});
   }
 
   void add_y_label(const ChartPanel& panel, double middle_px) {
     double x_px = y_label_x_px_;
     for (const std::string& line : y_label(panel)) {
-      add({.text = line, .x_px = x_px, .y_px = middle_px, .style = label_style, .anchor = Anchor::middle, .is_upright = true});
-      x_px += label_line_px;
+      add({.text = line, .x_px = x_px, .y_px = middle_px, .style = kLabelStyle, .anchor = Anchor::middle, .is_upright = true});
+      x_px += kLabelLine_px;
     }
   }
 
   /// Returns a free place to the right of the panel, at the line or up to a few text lines away from it.
   [[nodiscard]] std::optional<Box> place_outside(double line_px, double width_px, const std::vector<Box>& names) const {
     const double left_px = right_px_ + 8.0;
-    const double height_px = 1.2 * limit_style.size_px;
+    const double height_px = 1.2 * kLimitStyle.size_px;
     for (const double half_lines : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -1.0, -2.0, -3.0}) {
       const double middle_px = line_px + half_lines * 0.5 * height_px;
       const Box place{left_px, left_px + width_px, middle_px - 0.5 * height_px, middle_px + 0.5 * height_px};
@@ -334,7 +334,7 @@ class PageBuilder {
       const std::string arrow = level.y > shown.high ? "↑ " : level.y < shown.low ? "↓ " : "";
       const std::string name = arrow + printable(level.name);
       constexpr double kBetweenNames_px = 12.0;
-      const double width_px = text_width_px(name, limit_style) + (arrow.empty() ? 0.0 : kBetweenNames_px);
+      const double width_px = text_width_px(name, kLimitStyle) + (arrow.empty() ? 0.0 : kBetweenNames_px);
       const double line_px = vertical.to_px(std::clamp(level.y, shown.low, shown.high));
       std::vector<Box> taken = names;
       for (const ChartLevel& other : panel.levels) {
@@ -342,15 +342,15 @@ class PageBuilder {
           taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
         }
       }
-      const auto baseline_at = [&](double y_px) { return Box{last_px - width_px, last_px, y_px - limit_style.size_px, y_px + 3.0}; };
+      const auto baseline_at = [&](double y_px) { return Box{last_px - width_px, last_px, y_px - kLimitStyle.size_px, y_px + 3.0}; };
       const Box above = baseline_at(line_px - 5.0);
       const Box below = baseline_at(line_px + 14.0);
-      const bool top_is_near = line_px - vertical.high_px < limit_style.size_px + 1.0;
+      const bool top_is_near = line_px - vertical.high_px < kLimitStyle.size_px + 1.0;
       const std::optional<Box> outside = place_outside(line_px, width_px, names);
       PlacedText text{.text = name,
                       .x_px = above.right_px,
                       .y_px = above.bottom_px - 3.0,
-                      .style = limit_style,
+                      .style = kLimitStyle,
                       .anchor = Anchor::right,
                       .has_rim = true};
       std::optional<Box> free = top_is_near ? std::nullopt : free_place(above, left_px_, taken, curves);
@@ -363,15 +363,15 @@ class PageBuilder {
         names.push_back(*free);
       } else if (outside) {
         text.x_px = outside->left_px;
-        text.y_px = outside->bottom_px - 0.24 * limit_style.size_px;
+        text.y_px = outside->bottom_px - 0.24 * kLimitStyle.size_px;
         text.anchor = Anchor::left;
         names.push_back(*outside);
       } else {  // a name on a curve or a level is readable, on another name it is not
         std::optional<Box> readable = free_place(top_is_near ? below : above, left_px_, taken, {});
         for (Box lower = below; !readable && lower.bottom_px < vertical.low_px;) {
           readable = free_place(lower, left_px_, names, {});
-          lower.top_px += limit_style.size_px + 2.0;
-          lower.bottom_px += limit_style.size_px + 2.0;
+          lower.top_px += kLimitStyle.size_px + 2.0;
+          lower.bottom_px += kLimitStyle.size_px + 2.0;
         }
         names.push_back(readable.value_or(below));
         text.x_px = names.back().right_px;
@@ -382,9 +382,9 @@ class PageBuilder {
   }
 
   void add_x_label() {
-    for (const std::string& line : wrapped(printable(chart_.x_label), label_style, right_px_ - left_px_)) {
-      y_px_ += label_line_px;
-      add({.text = line, .x_px = (left_px_ + right_px_) / 2.0, .y_px = y_px_ - 4.0, .style = label_style, .anchor = Anchor::middle});
+    for (const std::string& line : wrapped(printable(chart_.x_label), kLabelStyle, right_px_ - left_px_)) {
+      y_px_ += kLabelLine_px;
+      add({.text = line, .x_px = (left_px_ + right_px_) / 2.0, .y_px = y_px_ - 4.0, .style = kLabelStyle, .anchor = Anchor::middle});
     }
   }
 
@@ -393,21 +393,21 @@ class PageBuilder {
     constexpr double kBetween_px = 24.0;
     const double width_px = column_width_px();
     double x_px = left_px_;
-    double baseline_px = y_px_ + label_line_px;
+    double baseline_px = y_px_ + kLabelLine_px;
     for (const LegendEntry& entry : entries_) {
       const std::string name = printable(entry.name);
       if (x_px > left_px_ && x_px + width_px > right_px_) {
         x_px = left_px_;
-        baseline_px += label_line_px + legend_gap_px;
+        baseline_px += kLabelLine_px + kLegendGap_px;
       }
       LegendSwatch swatch = entry.swatch;
       swatch.x_px = x_px;
-      swatch.y_px = std::round(baseline_px - label_style.size_px * 0.36);
+      swatch.y_px = std::round(baseline_px - kLabelStyle.size_px * 0.36);
       page_.swatches.push_back(swatch);
-      add({.text = name, .x_px = x_px + swatch_width_px + 8.0, .y_px = baseline_px, .style = label_style});
+      add({.text = name, .x_px = x_px + kSwatchWidth_px + 8.0, .y_px = baseline_px, .style = kLabelStyle});
       x_px += width_px + kBetween_px;
     }
-    y_px_ = baseline_px + legend_gap_px;
+    y_px_ = baseline_px + kLegendGap_px;
   }
 
   void add_legend(double top_px) {
@@ -415,15 +415,15 @@ class PageBuilder {
     for (const LegendEntry& entry : entries_) {
       LegendSwatch swatch = entry.swatch;
       swatch.x_px = legend_x_px_;
-      swatch.y_px = std::round(baseline_px - label_style.size_px * 0.36);
+      swatch.y_px = std::round(baseline_px - kLabelStyle.size_px * 0.36);
       page_.swatches.push_back(swatch);
       for (const std::string& line : legend_lines(entry)) {
-        add({.text = line, .x_px = legend_x_px_ + swatch_width_px + 8.0, .y_px = baseline_px, .style = label_style});
-        baseline_px += label_line_px;
+        add({.text = line, .x_px = legend_x_px_ + kSwatchWidth_px + 8.0, .y_px = baseline_px, .style = kLabelStyle});
+        baseline_px += kLabelLine_px;
       }
-      baseline_px += legend_gap_px;
+      baseline_px += kLegendGap_px;
     }
-    y_px_ = std::max(y_px_, baseline_px - label_line_px);
+    y_px_ = std::max(y_px_, baseline_px - kLabelLine_px);
   }
 
   Page finished() {
@@ -452,24 +452,24 @@ class PageBuilder {
   [[nodiscard]] static double panel_title_height_px(const std::string& title) { return title.empty() ? 12.0 : 28.0; }
 
   [[nodiscard]] double plot_height_px(const ChartPanel& panel) const {
-    return std::max(least_plot_height_px, chart_.panel_height_px - panel_title_height_px(panel.title) - tick_row_px);
+    return std::max(kLeastPlotHeight_px, chart_.panel_height_px - panel_title_height_px(panel.title) - kTickRow_px);
   }
 
   [[nodiscard]] std::vector<std::string> y_label(const ChartPanel& panel) const {
-    return wrapped(printable(panel.y_label), label_style, plot_height_px(panel));
+    return wrapped(printable(panel.y_label), kLabelStyle, plot_height_px(panel));
   }
 
   /// Width of the widest legend entry without line breaks.
   [[nodiscard]] double column_width_px() const {
     double width_px = 0.0;
     for (const LegendEntry& entry : entries_) {
-      width_px = std::max(width_px, swatch_width_px + 8.0 + text_width_px(printable(entry.name), label_style));
+      width_px = std::max(width_px, kSwatchWidth_px + 8.0 + text_width_px(printable(entry.name), kLabelStyle));
     }
     return width_px;
   }
 
   [[nodiscard]] std::vector<std::string> legend_lines(const LegendEntry& entry) const {
-    return wrapped(printable(entry.name), label_style, page_.width_px * 0.3);
+    return wrapped(printable(entry.name), kLabelStyle, page_.width_px * 0.3);
   }
 
   const Chart& chart_;

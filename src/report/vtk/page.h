@@ -41,7 +41,7 @@ struct RangeBar {
   double mark_px = 0.0;
   int color_index = 0;
 };
-inline constexpr double range_cap_px = 8.0;  ///< width of the ends of a bar
+inline constexpr double kRangeCap_px = 8.0;  ///< width of the ends of a bar
 
 /// Plot area of one panel.
 struct PanelPlace {
@@ -61,11 +61,11 @@ struct Page {
   std::vector<LegendSwatch> swatches;
 };
 
-inline constexpr double swatch_width_px = 26.0;
-inline constexpr double marker_px = 5.0;
+inline constexpr double kSwatchWidth_px = 26.0;
+inline constexpr double kMarker_px = 5.0;
 
-inline constexpr TextStyle tick_style{.size_px = 12, .is_bold = false, .color = {0x44, 0x44, 0x44}};
-inline constexpr unsigned char limit_color[3] = {0xC8, 0x10, 0x2E};
+inline constexpr TextStyle kTickStyle{.size_px = 12, .is_bold = false, .color = {0x44, 0x44, 0x44}};
+inline constexpr unsigned char kLimitColor[3] = {0xC8, 0x10, 0x2E};
 
 /// Computes the layout of a chart.
 Page lay_out(const Chart& chart);

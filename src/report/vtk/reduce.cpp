@@ -13,7 +13,7 @@ namespace {
 double rounded_px(double value_px) { return std::round(value_px * 100.0) / 100.0; }
 
 /// Half width of the dot for an isolated sample, which would be invisible as a line.
-constexpr double dot_px = 1.0;
+constexpr double kDot_px = 1.0;
 
 /// Indices of consecutive samples in the same column of pixels.
 struct PixelColumn {
@@ -45,9 +45,9 @@ std::vector<PixelColumn> pixel_columns(const std::vector<double>& x, const AxisS
   return columns;
 }
 
-constexpr double window_px = 8.0;
+constexpr double kWindow_px = 8.0;
 
-/// Points [begin, end) of a piece within one window of window_px pixels.
+/// Points [begin, end) of a piece within one window of kWindow_px pixels.
 struct Window {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -74,13 +74,13 @@ void unify(std::vector<Window>& windows) {
 
 std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
   constexpr double kSwings = 2.5;
-  constexpr double kLeast_px = curve_width_px + minima_width_px;  // below it the two lines overlap
+  constexpr double kLeast_px = kCurveWidth_px + kMinimaWidth_px;  // below it the two lines overlap
   std::vector<Window> windows;
   for (std::size_t i = 0; i < piece.size();) {
     Window window{.begin = i, .end = i, .low_px = piece[i].y_px, .high_px = piece[i].y_px};
     double travel_px = 0.0;
-    const double place = std::floor(piece[i].x_px / window_px);
-    for (; i < piece.size() && std::floor(piece[i].x_px / window_px) == place; ++i) {
+    const double place = std::floor(piece[i].x_px / kWindow_px);
+    for (; i < piece.size() && std::floor(piece[i].x_px / kWindow_px) == place; ++i) {
       travel_px += i > window.begin ? std::abs(piece[i].y_px - piece[i - 1].y_px) : 0.0;
       window.low_px = std::min(window.low_px, piece[i].y_px);
       window.high_px = std::max(window.high_px, piece[i].y_px);
@@ -91,7 +91,7 @@ std::vector<Window> windows_of(const std::vector<CurvePoint>& piece) {
     windows.push_back(window);
   }
   // A last window that ends early contains no whole cycle.
-  if (windows.size() > 1 && piece.back().x_px - piece[windows.back().begin].x_px < 0.5 * window_px) {
+  if (windows.size() > 1 && piece.back().x_px - piece[windows.back().begin].x_px < 0.5 * kWindow_px) {
     const Window last = windows.back();
     windows.pop_back();
     windows.back().end = last.end;
@@ -192,7 +192,7 @@ std::vector<std::vector<CurvePoint>> reduce(const ChartCurve& curve, const AxisS
     }
     if (ends_piece && pieces.back().size() == 1) {
       const CurvePoint only = pieces.back().front();
-      pieces.back() = {{only.x_px - dot_px, only.y_px}, {only.x_px + dot_px, only.y_px}};
+      pieces.back() = {{only.x_px - kDot_px, only.y_px}, {only.x_px + kDot_px, only.y_px}};
     }
   }
   return pieces;
@@ -216,7 +216,7 @@ std::vector<std::vector<BandPoint>> reduce(const ChartBand& band, const AxisScal
     }
     BandPoint point{0.0, rounded_px(vertical.to_px(low)), rounded_px(vertical.to_px(high))};
     const bool is_alone = columns[k].starts_piece && (k + 1 == columns.size() || columns[k + 1].starts_piece);
-    const double half_width_px = is_alone ? dot_px : 0.0;
+    const double half_width_px = is_alone ? kDot_px : 0.0;
     point.x_px = rounded_px(horizontal.to_px(band.x[samples.front()])) - half_width_px;
     pieces.back().push_back(point);
     if (samples.size() > 1 || is_alone) {

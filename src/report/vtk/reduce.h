@@ -8,8 +8,8 @@
 
 namespace heatsoak::report {
 
-inline constexpr double curve_width_px = 2.0;
-inline constexpr double minima_width_px = 1.0;  ///< line along the minima of a ripple; the one along its maxima is a curve
+inline constexpr double kCurveWidth_px = 2.0;
+inline constexpr double kMinimaWidth_px = 1.0;  ///< line along the minima of a ripple; the one along its maxima is a curve
 
 struct CurvePoint {
   double x_px = 0.0;

@@ -26,7 +26,7 @@ void SvgDevice::DrawString(float* point, const vtkStdString& text) {
 void SvgDevice::add_text(float x_px, float y_px, const vtkStdString& text, bool is_rim) {
   const double size_px = this->TextProp->GetFontSize();
   // Viewers disagree on dominant-baseline; a shift by the usual cap height is the same in all of them.
-  constexpr double capital_height = 0.72;
+  constexpr double kCapitalHeight = 0.72;
   const int vertical = this->TextProp->GetVerticalJustification();
   const double shift = vertical == VTK_TEXT_TOP ? 1.0 : vertical == VTK_TEXT_CENTERED ? 0.5 : 0.0;
   const int horizontal = this->TextProp->GetJustification();
@@ -35,7 +35,7 @@ void SvgDevice::add_text(float x_px, float y_px, const vtkStdString& text, bool 
   vtkNew<vtkXMLDataElement> element;
   element->SetName("text");
   element->SetAttribute("x", fmt::format("{:.6g}", x_px).c_str());
-  element->SetAttribute("y", fmt::format("{:.6g}", y_px + shift * capital_height * size_px).c_str());
+  element->SetAttribute("y", fmt::format("{:.6g}", y_px + shift * kCapitalHeight * size_px).c_str());
   if (const double turn_deg = this->TextProp->GetOrientation(); turn_deg != 0.0) {
     element->SetAttribute("transform", fmt::format("rotate({:g},{:.6g},{:.6g})", -turn_deg, x_px, y_px).c_str());
   }

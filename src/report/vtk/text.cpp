@@ -59,8 +59,8 @@ double text_width_px(const std::string& text, const TextStyle& style) {
   property->SetFontSize(style.size_px);
   property->SetBold(style.is_bold);
   vtkTextRenderer::Metrics metrics;
-  constexpr int one_point_per_pixel_dpi = 72;
-  vtkTextRenderer::GetInstance()->GetMetrics(property, vtkStdString(text), metrics, one_point_per_pixel_dpi, vtkTextRenderer::FreeType);
+  constexpr int kOnePointPerPixel_dpi = 72;
+  vtkTextRenderer::GetInstance()->GetMetrics(property, vtkStdString(text), metrics, kOnePointPerPixel_dpi, vtkTextRenderer::FreeType);
   return widest_font * (metrics.BoundingBox[1] - metrics.BoundingBox[0] + 1);
 }
 
