@@ -79,6 +79,7 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
   if (!robot::has_friction(robot)) {
     notes.emplace_back(FrictionUnknown{robot.file.filename().string()});
   }
+  static_assert(derate::observed::kSignalCount == 7, "a further input that the core does not measure needs a note here");
   const derate::Observer& observer = derating.observer;
   if (observer.uses(derate::observed::vehicle_speed)) {
     notes.emplace_back(AirSpeedUnknown{effects_with(motor, thermal::Signal::vehicle_speed)});
