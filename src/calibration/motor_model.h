@@ -59,7 +59,7 @@ struct MotorModel {
 /// have the faults stated in the file.
 estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
 
-/// Returns the sensor faults stated in the file, which are not fitted.
+/// Returns the sensor errors stated in the file, which are not fitted.
 std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
 /// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with

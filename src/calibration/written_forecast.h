@@ -33,7 +33,7 @@ void write_forecast(Calibration& calibration);
 /// Returns the findings about the compared fits and the chosen one.
 std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration);
 
-/// Adds the effects and sensor faults of the calibration that the motor file does not have. Returns the names of those that were added for
+/// Adds the effects and sensor errors of the calibration that the motor file does not have. Returns the names of those that were added for
 /// better forecasts.
 std::vector<std::string> add_extensions(const Calibration& calibration, const std::string& source, motor::Motor& motor);
 

@@ -38,10 +38,10 @@ struct LinearisedRun {
   [[nodiscard]] Eigen::Index sensors() const { return static_cast<Eigen::Index>(sensor_node.size()); }
 };
 
-/// Applies one more sensor fault to the predicted readings, residuals and sensitivities of `sensor` in `out`.
+/// Applies one more sensor error to the predicted readings, residuals and sensitivities of `sensor` in `out`.
 void add_fault(const motor::SensorFault& fault, Eigen::Index sensor, const MeasuredRun& run, LinearisedRun& out);
 
-/// Simulates from `start_C` (°C, per state node) and linearises along the result. Includes the sensor faults stated in the run.
+/// Simulates from `start_C` (°C, per state node) and linearises along the result. Includes the sensor errors stated in the run.
 /// `parameters` are in the network's order; `wanted` and `flux_nodes` are indices into its lists of parameters and nodes. Throws Failure
 /// (numerics_failed) if the temperatures diverge. Allocates memory once per run, not per sample.
 LinearisedRun linearise(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,

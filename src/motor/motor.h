@@ -91,7 +91,7 @@ struct MotorEffect {
   [[nodiscard]] std::size_t column_place() const;
 };
 
-/// A sensor fault that the file states. It changes the reading, not the temperature.
+/// A sensor error that the file states. It changes the reading, not the temperature.
 struct MotorSensor {
   std::string name;
   const SensorEffectType* type = nullptr;

@@ -23,7 +23,7 @@ bool brings_node(const thermal::EffectType& type) {
 struct Entry {
   std::string name;
   input::Reader reader;
-  const thermal::EffectType* type;  ///< null for a sensor effect
+  const thermal::EffectType* type;  ///< null for a sensor error
   const SensorEffectType* sensor;   ///< null for a thermal effect
 };
 

@@ -9,7 +9,7 @@
 
 namespace heatsoak::motor {
 
-/// Law of a sensor fault. The reading is linear in the history of the temperature: shown = L(T) + c; both depend on the size.
+/// Law of a sensor error. The reading is linear in the history of the temperature: shown = L(T) + c; both depend on the size.
 struct SensorLaw {
   /// Reading of a constant temperature. With `is_change` the argument is a derivative of the temperature, and the constant c is left out.
   double (*at_rest)(double size, double true_C, bool is_change) = nullptr;
