@@ -11,6 +11,7 @@
 #include "attribution/curve.h"
 #include "base/parallel.h"
 #include "estimation/left_out_runs.h"
+#include "estimation/size_evidence.h"
 #include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
@@ -105,15 +106,22 @@ class Scanner {
     constexpr std::size_t kZoomed = 4;
     std::vector<Family> families = all_families();
     const double without_nats = best_without_nats();
-    for (const estimation::FluxPlace& place : beginnings()) {
-      const std::vector<SharedRun>& shared = shared_at(place);
-      base::in_parallel(families.size(), 0, [&](std::size_t i) { take_better(families[i], score(families[i], shared, place)); });
-    }
+    const std::vector<estimation::FluxPlace> places = beginnings();
+    std::ranges::for_each(places, [&](const estimation::FluxPlace& place) { (void)shared_at(place); });
+    base::in_parallel(families.size(), 0, [&](std::size_t i) {
+      set_responses(families[i]);
+      for (const estimation::FluxPlace& place : places) {
+        take_better(families[i], score(families[i], shared_.at(place), place));
+      }
+      // The responses of all curves together take 100 MB; those of the best are computed again.
+      families[i].shown.clear();
+    });
     const auto keep_best = [&families](std::size_t count) {
       std::ranges::stable_sort(families, std::greater(), [](const Family& each) { return each.scored.nats; });
       families.resize(std::min(families.size(), count));
     };
     keep_best(kClimbed);
+    base::in_parallel(families.size(), 0, [&](std::size_t i) { set_responses(families[i]); });
     for (Family& each : families) {
       climb(each);
     }
@@ -158,7 +166,6 @@ class Scanner {
         }
       }
     }
-    base::in_parallel(families.size(), 0, [&](std::size_t i) { set_responses(families[i]); });
     return families;
   }
 
@@ -324,7 +331,7 @@ class Scanner {
     if (with_curve) {
       precision.bottomRightCorner(kKnots, kKnots) = precision_;
     }
-    return set_gain_nats(all.products(places, places), all.right(places), precision, has_sign, sizes);
+    return estimation::size_gain_nats(all.products(places, places), all.right(places), precision, has_sign, sizes);
   }
 
   /// Returns the products of a run with the hats of a family between the members and the residual.

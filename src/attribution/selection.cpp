@@ -180,12 +180,15 @@ class Selector : Rounds {
   void keep_what_reduces_error(const EffectSet& best, std::vector<std::size_t>& named, double error_share, RefusalReason why_not) {
     // The name with the weakest evidence is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    double error_K = named.empty() ? 0.0 : error_with_K(best, named);
     for (std::size_t i = named.size(); i-- > 0;) {
       std::vector<std::size_t> others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      if (!(error_with_K(best, named) < error_share * error_with_K(best, others))) {
+      const double without_K = error_with_K(best, others);
+      if (!(error_K < error_share * without_K)) {
         refuse({.id = id_of(best.members[named[i]]), .reason = why_not});
         named = std::move(others);
+        error_K = without_K;
       }
     }
   }

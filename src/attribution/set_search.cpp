@@ -7,21 +7,13 @@
 #include <limits>
 #include <set>
 
+#include "estimation/size_evidence.h"
 #include "estimation/thresholds.h"
 
 namespace heatsoak::attribution {
 namespace {
 
 constexpr double kNone_nats = -std::numeric_limits<double>::infinity();
-
-/// ln 2Φ(x).
-double log_twice_normal(double x) {
-  constexpr double kFar = -20.0;
-  if (x > kFar) {
-    return std::log(std::erfc(-x / std::sqrt(2.0)));
-  }
-  return -0.5 * x * x - std::log(-x) - 0.5 * std::log(0.5 * M_PI);
-}
 
 /// Returns ln Σ exp(x) of a non-empty list.
 double log_sum_nats(const std::vector<double>& nats) {
@@ -34,31 +26,6 @@ double log_sum_nats(const std::vector<double>& nats) {
 }
 
 }  // namespace
-
-double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
-                     const std::vector<bool>& has_sign, Eigen::VectorXd* sizes) {
-  const Eigen::Index count = right.size();
-  if (count == 0) {
-    return 0.0;
-  }
-  const Eigen::LLT<Eigen::MatrixXd> factor(products + precision);
-  if (factor.info() != Eigen::Success) {
-    return kNone_nats;
-  }
-  const Eigen::VectorXd mean = factor.solve(right);
-  double gain = 0.5 * right.dot(mean) - factor.matrixLLT().diagonal().array().log().sum() +
-                precision.llt().matrixLLT().diagonal().array().log().sum();
-  if (std::ranges::find(has_sign, true) != has_sign.end()) {
-    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(count, count));
-    for (Eigen::Index j = 0; j < count; ++j) {
-      gain += has_sign[static_cast<std::size_t>(j)] ? log_twice_normal(mean[j] / std::sqrt(inverse(j, j))) : 0.0;
-    }
-  }
-  if (sizes) {
-    *sizes = mean;
-  }
-  return gain;
-}
 
 SetColumns columns_of(const std::vector<int>& members, const std::vector<CandidateRule>& candidates, double size_sd) {
   SetColumns set;
@@ -81,7 +48,7 @@ SetColumns columns_of(const std::vector<int>& members, const std::vector<Candida
 }
 
 double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes) {
-  return set_gain_nats(point.products(set.columns, set.columns), point.right(set.columns), set.precision.asDiagonal(), set.has_sign, sizes);
+  return estimation::size_gain_nats(point, set.columns, set.precision, set.has_sign, sizes);
 }
 
 SetSearch::SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules)

@@ -91,11 +91,7 @@ struct SetColumns {
 };
 SetColumns columns_of(const std::vector<int>& members, const std::vector<CandidateRule>& candidates, double size_sd);
 
-/// Returns ½ vᵀp − ½ ln|K| + ½ ln|Λ| + Σ ln 2Φ, the sum over sizes with a sign. `precision` is Λ. Writes p to `sizes` if given. Returns −∞
-/// if K is not positive definite.
-double set_gain_nats(const Eigen::MatrixXd& products, const Eigen::VectorXd& right, const Eigen::MatrixXd& precision,
-                     const std::vector<bool>& has_sign, Eigen::VectorXd* sizes = nullptr);
-/// Returns the gain of a set at one point; products, right side and precision are those of `set`.
+/// Returns the gain in ln evidence of a set at one point, see estimation::size_gain_nats().
 double set_gain_nats(const estimation::Reduced& point, const SetColumns& set, Eigen::VectorXd* sizes = nullptr);
 
 }  // namespace heatsoak::attribution

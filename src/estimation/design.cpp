@@ -1,12 +1,43 @@
 #include "estimation/design.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "base/parallel.h"
 #include "estimation/averaged_run.h"
 #include "estimation/open_loop.h"
 
 namespace heatsoak::estimation {
+namespace {
+
+std::vector<Eigen::Index> nonzero_columns(const Columns& columns) {
+  const Eigen::Array<bool, 1, Eigen::Dynamic> is_active = (columns.array() != 0.0).colwise().any();
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index i = 0; i < is_active.size(); ++i) {
+    if (is_active[i]) {
+      active.push_back(i);
+    }
+  }
+  return active;
+}
+
+/// Whitened products of one run without its start temperatures.
+struct RunProducts {
+  Eigen::MatrixXd square;
+  double log_determinant = 0.0;
+};
+
+RunProducts without_starts(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening) {
+  const Eigen::Index x = design.run.states;
+  const Eigen::Index rest = square.cols() - x;
+  const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
+  const Eigen::MatrixXd across = square.topRightCorner(x, rest);
+  return {
+      square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across),
+      whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum()};
+}
+
+}  // namespace
 
 std::vector<DesignRun> design(const thermal::Network& network, const std::vector<LinearisedRun>& fitted,
                               const std::vector<MeasuredRun>& runs, const std::vector<Eigen::VectorXd>& weights,
@@ -29,6 +60,7 @@ std::vector<DesignRun> design(const thermal::Network& network, const std::vector
     if (!extra.empty()) {
       one.columns.rightCols(extra[r].cols()) = averaging.average(extra[r]);
     }
+    one.active = nonzero_columns(one.columns);
   });
   return all;
 }
@@ -54,14 +86,9 @@ void add_start_prior(const StartPrior& start, Eigen::MatrixXd& square) {
 }
 
 void add_without_starts(const Eigen::MatrixXd& square, const DesignRun& design, const Whitening& whitening, Products& sum) {
-  const Eigen::Index x = design.run.states;
-  const Eigen::Index rest = square.cols() - x;
-  const Eigen::LLT<Eigen::MatrixXd> start(square.topLeftCorner(x, x));
-  const Eigen::MatrixXd across = square.topRightCorner(x, rest);
-  const Eigen::MatrixXd left = square.bottomRightCorner(rest, rest) - across.transpose() * start.solve(across);
-  sum.square = sum.square.size() == 0 ? left : Eigen::MatrixXd(sum.square + left);
-  sum.log_determinant +=
-      whitening.log_determinant() + 2.0 * start.matrixLLT().diagonal().array().log().sum() + 2.0 * design.start.sd_K.array().log().sum();
+  const RunProducts left = without_starts(square, design, whitening);
+  sum.square = sum.square.size() == 0 ? left.square : Eigen::MatrixXd(sum.square + left.square);
+  sum.log_determinant += left.log_determinant;
 }
 
 Products products_of(std::span<const DesignRun> runs, const LatentFlux& flux, const std::vector<Eigen::Index>& columns) {
@@ -70,20 +97,32 @@ Products products_of(std::span<const DesignRun> runs, const LatentFlux& flux, co
     const Whitening whitening(design.run, flux, design.noise);
     const Eigen::Index x = design.run.states;
     const Eigen::Index count = columns.empty() ? design.columns.cols() : static_cast<Eigen::Index>(columns.size());
-    Columns tall(design.columns.rows(), x + count + 1);
-    tall.leftCols(x) = design.run.by_start;
-    if (columns.empty()) {
-      tall.middleCols(x, count) = design.columns;
-    } else {
-      tall.middleCols(x, count) = design.columns(Eigen::all, columns);
+    // Effects of some runs only are zero in all others: half of the columns, and three quarters of the products.
+    std::vector<Eigen::Index> taken, places;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index column = columns.empty() ? i : columns[static_cast<std::size_t>(i)];
+      if (std::ranges::binary_search(design.active, column)) {
+        taken.push_back(column);
+        places.push_back(i);
+      }
     }
+    places.push_back(count);
+    const auto active = static_cast<Eigen::Index>(taken.size());
+    Columns tall(design.columns.rows(), x + active + 1);
+    tall.leftCols(x) = design.run.by_start;
+    tall.middleCols(x, active) = design.columns(Eigen::all, taken);
     tall.rightCols<1>() = design.run.residual_K;
     whitening.apply(tall);
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(tall.cols(), tall.cols());
     square.selfadjointView<Eigen::Lower>().rankUpdate(tall.transpose());
     square.triangularView<Eigen::StrictlyUpper>() = square.transpose();
     add_start_prior(design.start, square);
-    add_without_starts(square, design, whitening, out);
+    const RunProducts left = without_starts(square, design, whitening);
+    if (out.square.size() == 0) {
+      out.square.setZero(count + 1, count + 1);
+    }
+    out.square(places, places) += left.square;
+    out.log_determinant += left.log_determinant;
   }
   return out;
 }

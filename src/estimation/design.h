@@ -15,6 +15,7 @@ struct DesignRun {
   SensorNoise noise;
   StartPrior start;
   Columns columns;
+  std::vector<Eigen::Index> active;       ///< indices of the columns that are not zero throughout the run, ascending
   std::vector<Eigen::Index> interval_of;  ///< for each interval of the log, the index of the interval in `run`; -1: none
 };
 

@@ -114,13 +114,22 @@ class Linearisation {
 
   /// Divides heat in W by the heat capacities, so that rates and derivatives are per second.
   void divide_by(std::span<const int> capacity_index) {
+    std::array<double, Network::kMostNodes> per_capacity_K_per_J{};
     for (int node = 0; node < states_; ++node) {
-      const int place = capacity_index[node];
-      const double capacity_J_per_K = parameters_[place];
-      out_.rate_K_per_s[node] /= capacity_J_per_K;
-      out_.by_state.row(node) /= capacity_J_per_K;
-      out_.by_parameter.row(node) /= capacity_J_per_K;
-      out_.by_parameter(node, place) -= out_.rate_K_per_s[node] / capacity_J_per_K;
+      per_capacity_K_per_J[node] = 1.0 / parameters_[capacity_index[node]];
+      out_.rate_K_per_s[node] *= per_capacity_K_per_J[node];
+    }
+    // Column by column, as they lie in memory.
+    for (Eigen::MatrixXd* const matrix : {&out_.by_state, &out_.by_parameter}) {
+      double* entry = matrix->data();
+      for (Eigen::Index column = 0; column < matrix->cols(); ++column) {
+        for (int node = 0; node < states_; ++node) {
+          *entry++ *= per_capacity_K_per_J[node];
+        }
+      }
+    }
+    for (int node = 0; node < states_; ++node) {
+      out_.by_parameter(node, capacity_index[node]) -= out_.rate_K_per_s[node] * per_capacity_K_per_J[node];
     }
   }
 

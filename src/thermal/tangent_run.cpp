@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/diagnostic.h"
@@ -26,6 +27,48 @@ constexpr Stage kThirdOrder[] = {{0.0, 0.25}, {1.0 / 3.0, 0.0}, {2.0 / 3.0, 0.75
 constexpr double kMostParts = 10'000.0;
 constexpr double kAbsoluteZero_C = -273.15;
 
+/// Derivatives of the state with respect to some quantities during one step, one column per quantity.
+struct Sensitivities {
+  const Eigen::MatrixXd& begin;          ///< at the beginning of the step
+  const Eigen::MatrixXd* direct_per_s;   ///< derivative of the rates at a constant state; null: none
+  Eigen::MatrixXd& rate_per_s;           ///< rates of the last stage
+  Eigen::MatrixXd& weighted_rate_per_s;  ///< sum over the stages
+};
+
+/// Adds one stage, `ahead_s` after the beginning of the step. `States`: number of state nodes; 0: any number.
+template <int States>
+void add_stage(const Eigen::MatrixXd& by_state, double ahead_s, double weight, const Sensitivities& of) {
+  const Eigen::Index states = States > 0 ? States : by_state.rows();
+  std::array<double, (States > 0 ? States : Network::kMostNodes)> now{};
+  for (Eigen::Index column = 0; column < of.begin.cols(); ++column) {
+    const Eigen::Index first = column * states;
+    const double* const begin = of.begin.data() + first;
+    double* const rate_per_s = of.rate_per_s.data() + first;
+    double* const sum_per_s = of.weighted_rate_per_s.data() + first;
+    for (Eigen::Index i = 0; i < states; ++i) {
+      now[static_cast<std::size_t>(i)] = ahead_s > 0.0 ? begin[i] + ahead_s * rate_per_s[i] : begin[i];
+    }
+    for (Eigen::Index i = 0; i < states; ++i) {
+      double sum = by_state.data()[i] * now[0];
+      for (Eigen::Index j = 1; j < states; ++j) {
+        sum += by_state.data()[j * states + i] * now[static_cast<std::size_t>(j)];
+      }
+      rate_per_s[i] = of.direct_per_s ? sum + of.direct_per_s->data()[first + i] : sum;
+      sum_per_s[i] += weight * rate_per_s[i];
+    }
+  }
+}
+
+void add_stage(const Eigen::MatrixXd& by_state, double ahead_s, double weight, const Sensitivities& of) {
+  if (by_state.rows() == 2) {
+    add_stage<2>(by_state, ahead_s, weight, of);
+  } else if (by_state.rows() == 3) {
+    add_stage<3>(by_state, ahead_s, weight, of);
+  } else {
+    add_stage<0>(by_state, ahead_s, weight, of);
+  }
+}
+
 }  // namespace
 
 TangentRun::TangentRun(const Network& network, std::span<const double> parameters, std::span<const int> wanted, std::span<const int> heated)
@@ -38,11 +81,15 @@ TangentRun::TangentRun(const Network& network, std::span<const double> parameter
   for (Eigen::VectorXd* vector : {&step_.state_C, &stage_C_, &rate_sum_}) {
     vector->setZero(states);
   }
-  for (Eigen::MatrixXd* matrix : {&step_.by_start, &stage_by_start_, &rate_by_start_, &by_start_sum_}) {
+  for (Eigen::MatrixXd* matrix : {&step_.by_start, &rate_by_start_, &by_start_sum_}) {
     matrix->setZero(states, states);
   }
-  for (Eigen::MatrixXd* matrix : {&step_.by_parameter, &stage_by_parameter_, &rate_by_parameter_, &by_parameter_sum_}) {
+  for (Eigen::MatrixXd* matrix : {&step_.by_parameter, &direct_, &rate_by_parameter_, &by_parameter_sum_}) {
     matrix->setZero(states, columns);
+  }
+  for (std::size_t q = 0; q < heated.size(); ++q) {
+    const double capacity_J_per_K = parameters_[static_cast<std::size_t>(network.capacity_index(heated[q]))];
+    direct_(heated[q], static_cast<Eigen::Index>(wanted.size() + q)) = 1.0 / capacity_J_per_K;
   }
 }
 
@@ -83,26 +130,16 @@ void TangentRun::one_step(double step_s, bool is_short, const OperatingPoint<dou
   by_parameter_sum_.setZero();
   for (const auto& [share, weight] : is_short ? std::span<const Stage>(kThirdOrder) : std::span<const Stage>(kFourthOrder)) {
     const double ahead_s = share * step_s;
-    stage_by_start_ = step_.by_start;
-    stage_by_parameter_ = step_.by_parameter;
     if (ahead_s > 0.0) {
       stage_C_ = step_.state_C + ahead_s * slope_.rate_K_per_s;
-      stage_by_start_ += ahead_s * rate_by_start_;
-      stage_by_parameter_ += ahead_s * rate_by_parameter_;
       set_slope(at, stage_C_);
     }
-    rate_by_start_.noalias() = slope_.by_state * stage_by_start_;
-    rate_by_parameter_.noalias() = slope_.by_state * stage_by_parameter_;
     for (std::size_t w = 0; w < wanted_.size(); ++w) {
-      rate_by_parameter_.col(static_cast<Eigen::Index>(w)) += slope_.by_parameter.col(wanted_[w]);
+      direct_.col(static_cast<Eigen::Index>(w)) = slope_.by_parameter.col(wanted_[w]);
     }
-    for (std::size_t q = 0; q < heated_.size(); ++q) {
-      const double capacity_J_per_K = parameters_[static_cast<std::size_t>(network_.capacity_index(heated_[q]))];
-      rate_by_parameter_(heated_[q], static_cast<Eigen::Index>(wanted_.size() + q)) += 1.0 / capacity_J_per_K;
-    }
+    add_stage(slope_.by_state, ahead_s, weight, {step_.by_start, nullptr, rate_by_start_, by_start_sum_});
+    add_stage(slope_.by_state, ahead_s, weight, {step_.by_parameter, &direct_, rate_by_parameter_, by_parameter_sum_});
     rate_sum_ += weight * slope_.rate_K_per_s;
-    by_start_sum_ += weight * rate_by_start_;
-    by_parameter_sum_ += weight * rate_by_parameter_;
   }
   step_.state_C += step_s * rate_sum_;
   step_.by_start += step_s * by_start_sum_;

@@ -41,10 +41,9 @@ class TangentRun {
   NetworkStep step_;
   Linearised slope_;
   Eigen::VectorXd stage_C_;
-  Eigen::MatrixXd stage_by_start_;
-  Eigen::MatrixXd stage_by_parameter_;
   Eigen::VectorXd rate_sum_;
   Eigen::MatrixXd rate_by_start_, by_start_sum_;
+  Eigen::MatrixXd direct_;  ///< derivative of the rates with respect to the wanted parameters and the heats at a constant state
   Eigen::MatrixXd rate_by_parameter_, by_parameter_sum_;
 };
 
