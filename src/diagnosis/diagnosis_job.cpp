@@ -90,6 +90,24 @@ void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording:
   }
 }
 
+BandSize size_of_band(const motor::Motor& motor, const std::vector<recording::Recording>& fitted,
+                      const calibration::PredictionOptions& options) {
+  BandSize size{fitted.size(), {}};
+  std::map<std::string, double> samples;
+  for (const calibration::PredictedRun& run : calibration::predict(motor, fitted, options).runs) {
+    for (const calibration::PredictedSignal& signal : run.signals) {
+      for (std::size_t k = 0; k < signal.high_C.size(); ++k) {
+        size.half_width_K[signal.signal] += 0.5 * (signal.high_C[k] - signal.low_C[k]);
+      }
+      samples[signal.signal] += static_cast<double>(signal.high_C.size());
+    }
+  }
+  for (auto& [signal, sum_K] : size.half_width_K) {
+    sum_K /= std::max(1.0, samples[signal]);
+  }
+  return size;
+}
+
 }  // namespace
 
 NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
@@ -136,9 +154,13 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   add_contradiction(answer.diagnosis.selection, input.train, findings);
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
+  std::ranges::move(outside_declared_ranges(job.motor, model, answer.motor), std::back_inserter(findings));
   const calibration::PredictionOptions predicting{choice.ambient_C, input.turns_within_rows};
   progress.begin(kBand);
   answer.motor.fit->band = left_out_band(job.motor, model, answer.diagnosis, fitted);
+  if (answer.motor.fit->band) {
+    answer.band = size_of_band(answer.motor, fitted, predicting);
+  }
   progress.begin(kScoring);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
   score_files(job.motor, answer.motor, held_out, predicting, answer.score);

@@ -1,6 +1,9 @@
 // The answer of `diagnose`: checks the logs, searches the missing effects, scores the hold-out logs, and makes the extended motor.
 #pragma once
 
+#include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "calibration/admission.h"
@@ -16,11 +19,18 @@ struct DiagnosisJob {
   recording::NamedLogs logs;  ///< their choice states whether logs that look wrong are accepted
 };
 
+/// Size of the 90 % band that the extended motor file has for forecasts.
+struct BandSize {
+  std::size_t recordings = 0;                  ///< number of recordings that were left out in turn
+  std::map<std::string, double> half_width_K;  ///< by signal, mean over the training runs
+};
+
 struct DiagnosisAnswer {
   DiagnosisInput input;
   Diagnosis diagnosis;
   HoldoutScore score;
-  motor::Motor motor;  ///< the extended motor
+  motor::Motor motor;            ///< the extended motor
+  std::optional<BandSize> band;  ///< nothing if the file has no band of its own
   calibration::Admission admission;
   std::vector<DiagnosisFinding> findings;  ///< assumptions and limits of the answer
 };

@@ -52,7 +52,7 @@ struct ColumnsNotSearched {
 
 using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, SignalsMissing, ConditionNotApplied, ConditionNeverMet,
                                       IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
-                                      calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+                                      calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NoHeatInput : public base::Failure {

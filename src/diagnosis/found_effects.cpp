@@ -19,6 +19,7 @@ class EffectReport {
   FoundEffect found(const attribution::AcceptedTerm& term) const {
     FoundEffect effect;
     effect.name = term.effect_name;
+    effect.probability = term.probability;
     effect.gain_nats = term.loss_without_nats;
     effect.delta_bic = -2.0 * term.loss_without_nats;
     effect.visibility_ratio = term.visibility_ratio;

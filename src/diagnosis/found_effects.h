@@ -29,6 +29,7 @@ struct FoundEffect {
   double mean_W = 0.0;                           ///< mean magnitude over the runs in which it acts
   double peak_W = 0.0;                           ///< 99th percentile of the magnitude
   bool has_heat = true;                          ///< false: a sensor error
+  double probability = 0.0;                      ///< posterior probability of the effect's family
   double gain_nats = 0.0;                        ///< loss of ln P without the effect's family
   double delta_bic = 0.0;                        ///< −2 · gain_nats
   double p_value = 1.0;                          ///< p-value of size 0; for a curve, of its most significant knot

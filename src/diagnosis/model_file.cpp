@@ -313,4 +313,21 @@ motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model,
   return result;
 }
 
+std::vector<calibration::OutsideDeclaredRange> outside_declared_ranges(const motor::Motor& before, const ModelOfLogs& model,
+                                                                       const motor::Motor& after) {
+  std::vector<calibration::OutsideDeclaredRange> found;
+  motor::Motor declared = before, fitted = after;
+  for (const calibration::CalibratedValue& each : model.parameters) {
+    if (!each.is_of_file) {
+      continue;
+    }
+    const base::ParameterValue& range = *motor::find_parameter(declared, each.name);
+    const double value = motor::find_parameter(fitted, each.name)->value;
+    if (range.spread && range.origin != base::Origin::measured && (value < range.spread->low || value > range.spread->high)) {
+      found.push_back({each.name, each.unit, value, range.spread->low, range.spread->high});
+    }
+  }
+  return found;
+}
+
 }  // namespace heatsoak::diagnosis

@@ -36,4 +36,9 @@ motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model,
 void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
                  const calibration::PredictionOptions& options, HoldoutScore& score);
 
+/// Returns the fitted parameters of the file `before` whose value in `after` is outside the range that `before` declares. The interval of
+/// an earlier fit is no declared range.
+std::vector<calibration::OutsideDeclaredRange> outside_declared_ranges(const motor::Motor& before, const ModelOfLogs& model,
+                                                                       const motor::Motor& after);
+
 }  // namespace heatsoak::diagnosis

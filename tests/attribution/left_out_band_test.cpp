@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "diagnosis/diagnosis_job.h"
@@ -41,9 +42,13 @@ TEST(LeftOutBand, CoversUnseenRuns) {
       one.missing = subjects()[seed % subjects().size()].make(1.0);
     }
     const diagnosis::DiagnosisAnswer answer = answer_of(one);
-    ASSERT_TRUE(answer.motor.fit && answer.motor.fit->band) << seed;
+    ASSERT_TRUE(answer.motor.fit && answer.motor.fit->band && answer.band) << seed;
+    EXPECT_EQ(answer.band->recordings, 4U) << seed;
     for (const calibration::PredictedRun& run : answer.score.runs_after) {
       for (const calibration::PredictedSignal& signal : run.signals) {
+        // The reported size is that of the training runs, and the unseen runs have similar loads.
+        const double last_K = 0.5 * (signal.high_C.back() - signal.low_C.back());
+        EXPECT_LT(std::abs(std::log(last_K / answer.band->half_width_K.at(signal.signal))), std::log(3.0)) << seed << signal.signal;
         covered += signal.coverage_share;
         count += 1.0;
       }
@@ -56,7 +61,9 @@ TEST(LeftOutBand, CoversUnseenRuns) {
 TEST(LeftOutBand, NeedsTwoRecordings) {
   Case one;
   one.training_runs = 1;
-  EXPECT_FALSE(answer_of(one).motor.fit->band);
+  const diagnosis::DiagnosisAnswer answer = answer_of(one);
+  EXPECT_FALSE(answer.motor.fit->band);
+  EXPECT_FALSE(answer.band);
 }
 
 }  // namespace

@@ -43,6 +43,16 @@ TEST(Diagnose, FindsTheChassisOfTheShippedExample) {
     EXPECT_LT(answer["after"]["holdout"][signal]["rmse_K"].get<double>(),
               0.6 * answer["before"]["holdout"][signal]["rmse_K"].get<double>());
   }
+  EXPECT_GT(effect["evidence"]["probability"].get<double>(), 0.95);
+  // Text and JSON state the band that the file has for forecasts.
+  const nlohmann::json& band = answer["forecast_band"];
+  ASSERT_TRUE(band.is_object()) << done.out;
+  EXPECT_EQ(band["recordings"], 3);
+  for (const char* signal : {"winding_C", "stator_C"}) {
+    EXPECT_GT(band["half_width_K"][signal].get<double>(), 0.1) << signal;
+    EXPECT_LT(band["half_width_K"][signal].get<double>(), 3.0) << signal;
+  }
+  EXPECT_THAT(answer["description"].get<std::string>(), HasSubstr("from predictions of 3 left-out recordings"));
   for (const char* key : {"residual_tests", "description"}) {
     EXPECT_TRUE(answer.contains(key)) << key;
   }

@@ -44,12 +44,7 @@ Json forecast_json(const calibration::Calibration& calibration) {
           {"left_out_pieces", forecast.pieces.size()},
           {"left_out_error", left_out},
           {"extensions", extensions},
-          {"band",
-           {{"unknown_heat_winding_share", number(forecast.band.unknown_heat_share[0])},
-            {"unknown_heat_stator_share", number(forecast.band.unknown_heat_share[1])},
-            {"time_scale_s", number(forecast.band.time_scale_s)},
-            {"heat_factor_sd", number(forecast.band.heat_factor_sd)},
-            {"width_ratio", number(forecast.band.width_ratio)}}}};
+          {"band", band_json(forecast.band)}};
 }
 
 /// Returns all remarks and findings as sentences.

@@ -41,7 +41,7 @@ std::string headline_of(const diagnosis::Diagnosis& diagnosis) {
 }  // namespace
 
 Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {
-  Document document{.headline = {{headline_of(answer.diagnosis)}}, .paragraphs = diagnosis_words(answer.diagnosis, answer.score)};
+  Document document{.headline = {{headline_of(answer.diagnosis)}}, .paragraphs = diagnosis_words(answer)};
   std::vector<Note> notes = diagnosis_notes(answer, readings);
   std::ranges::stable_partition(notes, [](const Note& each) { return each.severity == Severity::warning; });
   for (const Note& each : notes) {

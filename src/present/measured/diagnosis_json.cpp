@@ -43,17 +43,20 @@ Json effect_json(const diagnosis::FoundEffect& effect) {
                           {"ci95", {parameter.low, parameter.high}},
                           {"fitted", is_fitted}});
   }
-  Json json{
-      {"id", effect.id},
-      {"name", effect.name},
-      {"node", effect.node},
-      {"parameters", parameters},
-      {"condition", effect.condition},
-      {"drivers", effect.signals},
-      {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
-      {"evidence", {{"delta_bic", rounded(effect.delta_bic, 2)}, {"p_value", effect.p_value}, {"nats", rounded(effect.gain_nats, 2)}}},
-      {"confusable_with", plain_ids(effect.confusable_with)},
-      {"look_alike", effect.confounded_with}};
+  Json json{{"id", effect.id},
+            {"name", effect.name},
+            {"node", effect.node},
+            {"parameters", parameters},
+            {"condition", effect.condition},
+            {"drivers", effect.signals},
+            {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
+            {"evidence",
+             {{"delta_bic", rounded(effect.delta_bic, 2)},
+              {"p_value", effect.p_value},
+              {"nats", rounded(effect.gain_nats, 2)},
+              {"probability", rounded(effect.probability, 4)}}},
+            {"confusable_with", plain_ids(effect.confusable_with)},
+            {"look_alike", effect.confounded_with}};
   if (effect.is_from_catalogue) {
     json["visibility"] = rounded(effect.visibility_ratio, 4);
   }
@@ -163,8 +166,16 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(score.after)}};
   json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
   json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
+  json["forecast_band"] = nullptr;
+  if (answer.band) {
+    json["forecast_band"] = band_json(*answer.motor.fit->band);
+    json["forecast_band"]["recordings"] = answer.band->recordings;
+    for (const auto& [signal, width_K] : answer.band->half_width_K) {
+      json["forecast_band"]["half_width_K"][signal] = rounded(width_K, 4);
+    }
+  }
   json["residual_tests"] = {{"before", tests_json(diagnosis.tests_before)}, {"after", tests_json(diagnosis.tests_after)}};
-  json["description"] = fmt::format("{}", fmt::join(diagnosis_words(diagnosis, score), " "));
+  json["description"] = fmt::format("{}", fmt::join(diagnosis_words(answer), " "));
   json["figures_contradicted"] = Json::array();
   for (const diagnosis::ChangedParameter& parameter : diagnosis.changed) {
     json["figures_contradicted"].push_back({{"name", parameter.name},

@@ -238,11 +238,11 @@ constexpr std::string_view kStyle =
 
 std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings,
                            const std::vector<std::pair<std::string, std::string>>& svg) {
-  const auto& [input, diagnosis, score, motor, admission, findings] = answer;
+  const auto& [input, diagnosis, score, motor, band, admission, findings] = answer;
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Diagnosis</title><style>{}</style></head><body>\n", kStyle);
   text += fmt::format("<h1>Diagnosis: {}</h1>\n<div class=\"words\">\n", heading_of(diagnosis.verdict));
-  for (const std::string& each : diagnosis_words(diagnosis, score)) {
+  for (const std::string& each : diagnosis_words(answer)) {
     text += fmt::format("<p>{}</p>\n", base::xml_text(each));
   }
   text += "</div>\n";

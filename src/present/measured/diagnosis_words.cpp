@@ -241,6 +241,22 @@ std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const dia
       fmt::join(names, " and "), is_held_out ? "the hold-out runs" : "the training runs", fmt::join(errors, ", "));
 }
 
+/// Reports the band of forecasts with the written file.
+std::string band_in_words(const diagnosis::DiagnosisAnswer& answer) {
+  if (!answer.band) {
+    return fmt::format(
+        "Forecasts with the new file have a band of the usual size, because {}.",
+        has_one_recording(answer.diagnosis.runs) ? "a single recording cannot be left out" : "a fit without one of the recordings failed");
+  }
+  std::vector<std::string> widths;
+  for (const auto& [signal, width_K] : answer.band->half_width_K) {
+    widths.push_back(fmt::format("{} K at the {}", base::significant(width_K, 2), signal.substr(0, signal.rfind('_'))));
+  }
+  return fmt::format(
+      "The 90 % band of forecasts with the new file is ±{} on average over the training runs, from predictions of {} left-out recordings.",
+      fmt::join(widths, " and ±"), answer.band->recordings);
+}
+
 std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
   const thermal::OperatingQuantity<double>& quantity = thermal::quantity_of(beyond.signal);
   return fmt::format(
@@ -379,7 +395,9 @@ std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis
   return all;
 }
 
-std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
+std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answer) {
+  const diagnosis::Diagnosis& diagnosis = answer.diagnosis;
+  const diagnosis::HoldoutScore& score = answer.score;
   std::vector<std::string> all{verdict_in_words(diagnosis)};
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     // Effects outside the catalogue are described below, with their signals.
@@ -409,6 +427,7 @@ std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, 
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
   }
+  all.push_back(band_in_words(answer));
   std::ranges::transform(score.beyond_training, std::back_inserter(all), beyond_in_words);
   for (const std::string& refused : refusal_words(diagnosis.selection)) {
     all.push_back(fmt::format("Not named: {}.", refused));

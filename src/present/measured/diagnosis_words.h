@@ -10,9 +10,9 @@
 
 namespace heatsoak::present {
 
-/// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if `score` has any, else those of the training
+/// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if there are any, else those of the training
 /// runs.
-std::vector<std::string> diagnosis_words(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score);
+std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answer);
 
 /// Returns one sentence per unexplained heat. Curves with the same node, factor and signals share one.
 std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis);

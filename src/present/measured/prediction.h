@@ -26,6 +26,8 @@ Json prediction_json(const motor::Motor& motor, const calibration::PredictionAns
                      std::span<const recording::LogReading> readings);
 /// Returns the warnings as sentences, in the order of the logs.
 std::vector<std::string> warning_words(const calibration::PredictionAnswer& answer);
+/// Returns the parameters of the band.
+Json band_json(const motor::ForecastBand& band);
 /// Returns one JSON object per run, with the keys of heatsoak.prediction/1.
 Json runs_json(const std::vector<calibration::PredictedRun>& runs);
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "present/measured/calibration_words.h"
@@ -18,6 +20,16 @@ Json runs_json(const std::vector<calibration::PredictedRun>& runs) {
     all.push_back({{"name", run.name}, {"error", error}, {"coverage_90", coverage}});
   }
   return all;
+}
+
+Json band_json(const motor::ForecastBand& band) {
+  // Six significant digits are the same on every machine.
+  const auto number = [](double value) { return std::stod(fmt::format("{:.6g}", value)); };
+  return {{"unknown_heat_winding_share", number(band.unknown_heat_share[0])},
+          {"unknown_heat_stator_share", number(band.unknown_heat_share[1])},
+          {"time_scale_s", number(band.time_scale_s)},
+          {"heat_factor_sd", number(band.heat_factor_sd)},
+          {"width_ratio", number(band.width_ratio)}};
 }
 
 Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
