@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnosis/contradicting_run.h"
 #include "diagnosis/diagnosis.h"
 #include "estimation/fit.h"
 #include "missing_effects.h"
@@ -59,6 +61,9 @@ estimation::MeasuredRun measured(const TrueRun& run);
 diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs);
 /// Runs for scoring only.
 std::vector<estimation::MeasuredRun> holdout(const Runs& runs);
+
+/// Returns the run that contradicts the others, after a diagnosis.
+std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection);
 
 struct Answer {
   diagnosis::Diagnosis diagnosis;
