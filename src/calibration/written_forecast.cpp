@@ -22,10 +22,10 @@ bool is_better_than_innovations(const Forecast& forecast) {
   const RivalScore best = rival(forecast.source);
   const RivalScore other = rival(ForecastSource::innovations);
   const auto matters = [&](const auto& signal_and_error) {
-    const auto same = std::ranges::find(best.rmse_K, signal_and_error.first, [](const auto& each) { return each.first; });
-    return same == best.rmse_K.end() || signal_and_error.second > same->second + estimation::thresholds().matters_K;
+    const auto same = std::ranges::find(best.expected_K, signal_and_error.first, [](const auto& each) { return each.first; });
+    return same == best.expected_K.end() || signal_and_error.second > same->second + estimation::thresholds().matters_K;
   };
-  return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.rmse_K, matters);
+  return other.score_nats > best.score_nats + kLeastGain_nats && std::ranges::any_of(other.expected_K, matters);
 }
 
 /// Returns the matrix of ones and zeros that selects, for each coordinate of `to`, the one with the same name in `from`; a row of zeros if
@@ -68,7 +68,8 @@ void score_innovations(const ForecastModel& model, estimation::FitOptions option
     return found;
   };
   const PieceScore score = score_pieces(model, calibration.runs, forecast.pieces, fit_without);
-  forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, calibration.runs));
+  const PieceScore own = score_pieces(model, calibration.runs, forecast.pieces, calibration.fit.theta, nullptr);
+  forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, own, calibration.runs));
 }
 
 bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_fitted_runs_better) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "calibration/forecast/prediction.h"
 #include "motor/write_motor.h"
@@ -151,6 +152,36 @@ TEST(Forecast, ExtendsANetworkThatIsWrong) {
     extended += is_better ? 1 : 0;
   }
   EXPECT_GE(extended, kSeeds - 1);
+}
+
+/// Two runs: a left-out run is predicted from one run, the file's parameters come from two. Errors f + c/n of unseen and f − c/n of fitted
+/// runs give f + c/2 from the errors at n = 1 (left out) and n = 2 (fitted).
+TEST(RivalScore, ExpectsTheErrorOfAFitToAllRuns) {
+  constexpr double kFloor_K2 = 1.0, kParameters_K2 = 0.5;
+  std::vector<estimation::MeasuredRun> runs(2);
+  const auto score = [&](double mean_square_K2, double nats) {
+    PieceScore all{nats, {}};
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      runs[r].sensors = {estimation::Sensor{"winding_C", "winding"}};
+      PredictedPiece piece;
+      piece.run = r;
+      piece.path.sensor_node = {0};
+      piece.path.residual_K = Eigen::VectorXd::Constant(10, std::sqrt(mean_square_K2));
+      all.pieces.push_back(piece);
+    }
+    return all;
+  };
+  const PieceScore left_out = score(kFloor_K2 + kParameters_K2, 1.0);
+  const PieceScore fitted = score(kFloor_K2 - 0.5 * kParameters_K2, -0.5);
+  const RivalScore rival = rival_score(ForecastSource::ordinary, left_out, fitted, runs);
+  EXPECT_NEAR(rival.rmse_K.front().second, std::sqrt(1.5), 1e-12) << "reported as measured";
+  EXPECT_NEAR(rival.expected_K.front().second, std::sqrt(kFloor_K2 + 0.5 * kParameters_K2), 1e-12);
+  EXPECT_NEAR(rival.score_nats, 0.5, 1e-12);
+  constexpr double kFailed = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(rival_score(ForecastSource::ordinary, score(1.0, kFailed), fitted, runs).score_nats, kFailed);
+  // Blocks of one run share its load: only the left-out error counts.
+  runs.resize(1);
+  EXPECT_EQ(rival_score(ForecastSource::ordinary, score(1.5, 1.0), score(0.75, -0.5), runs).score_nats, 1.0);
 }
 
 /// With only one run the priors of the data sheet matter: a single steady state cannot separate two resistances.

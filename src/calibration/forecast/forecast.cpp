@@ -21,6 +21,26 @@ constexpr int kPieceSteps = 12;
 /// Largest ratio by which the perturbed starting point differs from the file.
 constexpr double kPerturbed_ratio = 1.5;
 
+/// The result is sorted by signal.
+SignalErrors errors_of(const PieceScore& score, std::span<const estimation::MeasuredRun> runs) {
+  std::map<std::string, std::pair<double, double>> sums;
+  for (const PredictedPiece& piece : score.pieces) {
+    const estimation::MeasuredRun& run = runs[piece.run];
+    for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
+      if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
+        auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
+        squares_K2 += error_K * error_K;
+        count += 1.0;
+      }
+    }
+  }
+  SignalErrors errors;
+  for (const auto& [signal, sum] : sums) {
+    errors.emplace_back(signal, std::sqrt(sum.first / sum.second));
+  }
+  return errors;
+}
+
 struct Candidate {
   const Extension* extension = nullptr;
   ForecastSetup setup;
@@ -168,8 +188,8 @@ class Search {
 
   /// True if the RMS error of a signal is smaller than now by more than the accuracy of ordinary sensors.
   [[nodiscard]] bool matters(const PieceScore& score) const {
-    const auto before = rival_score(out_.source, score_, runs_).rmse_K;
-    const auto after = rival_score(out_.source, score, runs_).rmse_K;
+    const SignalErrors before = errors_of(score_, runs_);
+    const SignalErrors after = errors_of(score, runs_);
     return std::ranges::any_of(before, [&](const auto& each) {
       const auto same = std::ranges::find(after, each.first, [](const auto& other) { return other.first; });
       return same != after.end() && same->second < each.second - estimation::thresholds().matters_K;
@@ -193,7 +213,7 @@ class Search {
     return candidates;
   }
 
-  /// Scores file, ordinary least squares and tempered fit on the left-out pieces. With `chooses` the best of them becomes the result.
+  /// Scores file, ordinary least squares and tempered fit. With `chooses` the best of them becomes the result.
   void compare_with_rivals(bool chooses) {
     const ForecastRules ordinary{
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
@@ -202,9 +222,12 @@ class Search {
     const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;
     const PieceScore of_plain = score_pieces(*base_, runs_, out_.pieces, best_plain.theta, &ordinary);
     const PieceScore of_file = score_pieces(*base_, runs_, out_.pieces, base_->start(), nullptr);
-    add_rival(ForecastSource::tempered, score_);
-    add_rival(ForecastSource::ordinary, of_plain);
-    add_rival(ForecastSource::file, of_file);
+    const auto add = [&](ForecastSource source, const PieceScore& left_out, const ForecastModel& model, const Eigen::VectorXd& theta) {
+      out_.rivals.push_back(rival_score(source, left_out, score_pieces(model, runs_, out_.pieces, theta, nullptr), runs_));
+    };
+    add(ForecastSource::tempered, score_, *model_, out_.fit.theta);
+    add(ForecastSource::ordinary, of_plain, *base_, best_plain.theta);
+    add(ForecastSource::file, of_file, *base_, base_->start());
     if (!chooses) {
       return;
     }
@@ -227,8 +250,6 @@ class Search {
       out_.fit.covariance = base_->prior().precision.inverse();
     }
   }
-
-  void add_rival(ForecastSource source, const PieceScore& score) { out_.rivals.push_back(rival_score(source, score, runs_)); }
 
   /// Fits the band. Without left-out pieces it uses the fitted runs, with one degree of freedom, and does not narrow the band.
   void set_band() {
@@ -258,21 +279,20 @@ class Search {
 
 }  // namespace
 
-RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const estimation::MeasuredRun> runs) {
-  RivalScore rival{source, score.score_nats, {}};
-  std::map<std::string, std::pair<double, double>> sums;
-  for (const PredictedPiece& piece : score.pieces) {
-    const estimation::MeasuredRun& run = runs[piece.run];
-    for (Eigen::Index row = 0; row < piece.path.residual_K.size(); ++row) {
-      if (const double error_K = piece.path.residual_K[row]; !std::isnan(error_K)) {
-        auto& [squares_K2, count] = sums[run.sensors[static_cast<std::size_t>(row % piece.path.sensors())].signal];
-        squares_K2 += error_K * error_K;
-        count += 1.0;
-      }
-    }
+RivalScore rival_score(ForecastSource source, const PieceScore& left_out, const PieceScore& fitted,
+                       std::span<const estimation::MeasuredRun> runs) {
+  // Blocks of one run share its load, so that the fitted run says little about others.
+  const double weight = runs.size() > 1 ? left_out_weight(left_out.pieces.size()) : 1.0;
+  RivalScore rival{source, left_out.score_nats, errors_of(left_out, runs)};
+  rival.expected_K = rival.rmse_K;
+  if (!std::isfinite(left_out.score_nats)) {
+    return rival;
   }
-  for (const auto& [signal, sum] : sums) {
-    rival.rmse_K.emplace_back(signal, std::sqrt(sum.first / sum.second));
+  rival.score_nats = weight * left_out.score_nats + (1.0 - weight) * fitted.score_nats;
+  const SignalErrors own = errors_of(fitted, runs);
+  for (std::size_t i = 0; i < std::min(own.size(), rival.expected_K.size()); ++i) {
+    double& expected_K = rival.expected_K[i].second;
+    expected_K = std::hypot(std::sqrt(weight) * expected_K, std::sqrt(1.0 - weight) * own[i].second);
   }
   return rival;
 }

@@ -19,11 +19,15 @@ struct AcceptedExtension {
   double gain_nats = 0.0;  ///< decrease of the score of the left-out pieces
 };
 
-/// Score of one alternative on the left-out pieces.
+/// Error per signal, root of the mean square over the pieces.
+using SignalErrors = std::vector<std::pair<std::string, double>>;
+
+/// Score of one alternative.
 struct RivalScore {
   ForecastSource source = ForecastSource::file;
-  double score_nats = 0.0;                             ///< smaller is better
-  std::vector<std::pair<std::string, double>> rmse_K;  ///< per signal, root of the mean square over the pieces
+  double score_nats = 0.0;       ///< expected for a fit to all runs, see left_out_weight(); smaller is better
+  SignalErrors rmse_K;           ///< errors in the left-out pieces
+  SignalErrors expected_K = {};  ///< expected for a fit to all runs
 };
 
 struct Forecast {
@@ -39,7 +43,9 @@ struct Forecast {
 };
 
 /// Summarises the prediction of the left-out pieces.
-RivalScore rival_score(ForecastSource source, const PieceScore& score, std::span<const estimation::MeasuredRun> runs);
+/// Scores an alternative by the left-out pieces. If they are whole runs, the expected score also includes those of the fit to all runs.
+RivalScore rival_score(ForecastSource source, const PieceScore& left_out, const PieceScore& fitted,
+                       std::span<const estimation::MeasuredRun> runs);
 
 /// Decrease of the score per parameter from which one model counts as better: 5 % of the RMS error.
 inline constexpr double kLeastGain_nats = 0.05;
