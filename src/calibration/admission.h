@@ -105,7 +105,7 @@ struct Admission {
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C = {});
 
-/// Same for logs as they were read, with the failures of those that could not be read.
+/// Checks logs as they were read. The thrown problems include those of logs that could not be read.
 Admission admit(const motor::Motor& motor, const recording::NamedLogs& logs);
 
 /// Returns true if the fit used rows of this recording. Compares fingerprints of the content; older fit files stored only the name.

@@ -13,7 +13,7 @@ struct ExporterType {
   std::string_view name;  ///< the file's name; set by all_exporters()
   std::string_view summary;
   std::string (*write)(const Derating& derating) = nullptr;
-  /// The same, with a binary built by the named C compiler; null if the format contains no binary.
+  /// Writes the format with a binary built by the named C compiler; null if the format contains no binary.
   std::string (*write_compiled)(const Derating& derating, const std::string& compiler) = nullptr;
 };
 

@@ -43,7 +43,7 @@ struct LinearFit {
   Eigen::VectorXd coefficients;
   Eigen::MatrixXd covariance;
   /// −½ [ misfit + ln|V| + ln|H| − ln|Λ| ] in nats, up to a constant that depends only on the number of samples. H is the posterior and Λ
-  /// the prior precision; directions without a prior contribute 1 to |Λ|, which is then the restricted likelihood (REML;
+  /// the prior precision; directions without a prior contribute 1 to |Λ|, as in restricted maximum likelihood (REML;
   /// H. D. Patterson and R. Thompson, 1971).
   double log_evidence = 0.0;
   double misfit = 0.0;  ///< sum of the squared whitened residuals, those of the priors included

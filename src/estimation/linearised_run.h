@@ -47,7 +47,7 @@ void add_fault(const motor::SensorFault& fault, Eigen::Index sensor, const Measu
 LinearisedRun linearise(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                         std::span<const int> flux_nodes, std::span<const double> start_C, const MeasuredRun& run);
 
-/// Same as linearise(), but linearises along a given path (states × samples, in °C), which the network need not follow by itself. sensor_C
+/// Linearises along a given path (states × samples, in °C), which the network need not follow by itself. sensor_C
 /// is the solution of these linear equations from the start of the path.
 LinearisedRun linearise_along(const thermal::Network& network, std::span<const double> parameters, std::span<const int> wanted,
                               std::span<const int> flux_nodes, const Eigen::MatrixXd& path_C, const MeasuredRun& run);

@@ -9,10 +9,10 @@
 
 namespace heatsoak::estimation {
 
-/// Same as linearise() of a network, with the sensor errors of the model. The columns are per unit of each coordinate. If `start_C` is
+/// Simulates and linearises the model, its sensor errors included. The columns are per unit of each coordinate. If `start_C` is
 /// shorter than the number of state nodes, the other nodes start at ambient temperature.
 LinearisedRun linearise(const Model& model, std::span<const double> start_C, const MeasuredRun& run);
-/// Same as linearise_along() of a network, with the sensor errors of the model.
+/// Linearises the model, its sensor errors included, along a path as linearise_along() of a network does.
 LinearisedRun linearise_along(const Model& model, const Eigen::MatrixXd& path_C, const MeasuredRun& run);
 
 }  // namespace heatsoak::estimation

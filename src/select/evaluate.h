@@ -128,7 +128,7 @@ std::vector<MotorEvaluation> evaluate(const robot::Robot& robot, const duty::Dut
                                       std::span<const motor::Motor> motors, const EvaluateOptions& options,
                                       const base::Progress& progress = {});
 
-/// Does the same as evaluate(), but uses the spreads of the motor files unchanged, even if they are missing or implausibly narrow. For
+/// Evaluates as evaluate() does, but uses the spreads of the motor files unchanged, even if they are missing or implausibly narrow. For
 /// comparisons only, not for verdicts.
 std::vector<MotorEvaluation> evaluate_as_stated(const robot::Robot& robot, const duty::Duty& duty,
                                                 std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,

@@ -21,7 +21,7 @@ std::optional<SteadyState> steady_state(const Network& network, const OperatingP
 
 /// Writes dT/dt in K/s of all nodes at the temperatures `state_C`.
 using RateFunction = std::function<void(std::span<const double> state_C, std::span<double> rate_K_per_s)>;
-/// The same for any thermal system; Newton's method starts at `start_C`.
+/// Solves rate = 0 for any thermal system; Newton's method starts at `start_C`.
 std::optional<SteadyState> steady_state(const RateFunction& rates, std::span<const double> start_C);
 
 /// Current that is switched on and off periodically.

@@ -53,6 +53,8 @@ const std::set<std::string, std::less<>> kPureNumbers{"count",
 /// Names whose unit is documented elsewhere.
 const std::set<std::string, std::less<>> kUnitBeside{// values, ranges and tolerances: their ParameterSpec or comment has the unit
                                                      "value", "values", "low", "high", "absolute", "kUnknown", "slope", "intercept",
+                                                     // fixed-point values: the expression of that type has the unit
+                                                     "most_error",
                                                      // thresholds: their ThresholdType has the unit
                                                      "limit_value", "origin_value",
                                                      // distributions: the variable of that type has the unit
