@@ -54,7 +54,7 @@ TEST(FaultTable, state_corrupted_without_a_start_stays_open) {
   const Config config = make_config(4);
   const Plant plant(config, {});
   Random random(5);
-  for (const unsigned char fill : {0x00, 0x5a, 0xff}) {
+  for (const int fill : {0x00, 0x5a, 0xff}) {
     State state;
     std::memset(static_cast<void*>(&state), fill, sizeof(state));
     for (int k = 0; k < 20; ++k) {

@@ -103,22 +103,40 @@ struct KnownBefore {
   Coordinates sd{1.0, 1.0, 0.5, 0.7};
 };
 
+/// Covariance of the errors of a piece.
+Eigen::MatrixXd covariance_K2(const Sampled& piece, const Coordinates& at) {
+  Eigen::MatrixXd covariance = piece.of_parameters_K2 + std::exp(2.0 * at[3]) * piece.by_heat_K * piece.by_heat_K.transpose();
+  const Eigen::MatrixXd correlation = slot_correlation(piece.slot_s, std::exp(at[2]));
+  for (std::size_t flux = 0; flux < piece.by_flux_K.size(); ++flux) {
+    covariance += std::exp(2.0 * at[flux]) * piece.by_flux_K[flux] * correlation * piece.by_flux_K[flux].transpose();
+  }
+  covariance.diagonal() += piece.noise_K.cwiseAbs2();
+  return covariance;
+}
+
 double log_posterior(const std::vector<Sampled>& pieces, const Coordinates& at, const KnownBefore& before) {
   double nats = 0.0;
   for (std::size_t i = 0; i < at.size(); ++i) {
     nats -= 0.5 * std::pow((at[i] - before.mean[i]) / before.sd[i], 2);
   }
   for (const Sampled& piece : pieces) {
-    Eigen::MatrixXd covariance = piece.of_parameters_K2 + std::exp(2.0 * at[3]) * piece.by_heat_K * piece.by_heat_K.transpose();
-    const Eigen::MatrixXd correlation = slot_correlation(piece.slot_s, std::exp(at[2]));
-    for (std::size_t flux = 0; flux < piece.by_flux_K.size(); ++flux) {
-      covariance += std::exp(2.0 * at[flux]) * piece.by_flux_K[flux] * correlation * piece.by_flux_K[flux].transpose();
-    }
-    covariance.diagonal() += piece.noise_K.cwiseAbs2();
-    const Eigen::LDLT<Eigen::MatrixXd> solver(covariance);
+    const Eigen::LDLT<Eigen::MatrixXd> solver(covariance_K2(piece, at));
     nats -= 0.5 * (solver.vectorD().array().max(1e-12).log().sum() + piece.error_K.dot(solver.solve(piece.error_K)));
   }
   return nats;
+}
+
+/// Returns the number of independent errors whose mean square varies as much as that of the pieces (Satterthwaite 1946).
+double independent_errors(const std::vector<Sampled>& pieces, const Coordinates& at) {
+  double count = 0.0;
+  double shared = 0.0;
+  for (const Sampled& piece : pieces) {
+    const Eigen::MatrixXd covariance = covariance_K2(piece, at);
+    const Eigen::VectorXd per_sd = covariance.diagonal().cwiseSqrt().cwiseInverse();
+    count += static_cast<double>(per_sd.size());
+    shared += (per_sd.asDiagonal() * covariance * per_sd.asDiagonal()).squaredNorm();
+  }
+  return count > 0.0 ? count * count / shared : 1.0;
 }
 
 /// Maximises the posterior by coordinate search; halves the step when no coordinate improves.
@@ -170,7 +188,7 @@ Eigen::VectorXd forecast_sd_K(const estimation::LinearisedRun& path, const estim
 motor::ForecastBand usual_band(double duration_s) { return {{kUsual_share, kUsual_share}, duration_s / 3.0, kUsual_share, 1.0}; }
 
 motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
-                             std::span<const PredictedPiece> pieces, std::size_t left_out) {
+                             std::span<const PredictedPiece> pieces, std::optional<std::size_t> dependent_pieces) {
   double longest_s = 0.0;
   for (const estimation::MeasuredRun& run : runs) {
     longest_s = std::max(longest_s, duration_s(run));
@@ -199,8 +217,8 @@ motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimat
     std::nth_element(sizes.begin(), at_90, sizes.end());
     ratio += *at_90 / kBand_sd / static_cast<double>(pieces.size());
   }
-  // With few pieces the spread of the next run's error is uncertain.
-  const boost::math::students_t student(static_cast<double>(left_out));
+  // With few errors the spread of the next run's error is uncertain.
+  const boost::math::students_t student(dependent_pieces ? static_cast<double>(*dependent_pieces) : independent_errors(all, at));
   band.width_ratio = ratio * boost::math::quantile(student, 0.95) / kBand_sd;
   return band;
 }

@@ -1,6 +1,7 @@
 // Uncertainty band of a forecast: from parameters, heat factor of the run, slow unknown heat and sensor noise.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,8 +22,9 @@ Eigen::VectorXd forecast_sd_K(const estimation::LinearisedRun& path, const estim
 motor::ForecastBand usual_band(double duration_s);
 
 /// Fits the band to the errors of the left-out pieces: the most probable parameters of the band, then a factor so that it contains 90 % of
-/// the errors. Student's distribution with `left_out` (at least 1) degrees of freedom accounts for the small number of pieces.
+/// the errors. Student's distribution accounts for the small number of errors. Its degrees of freedom are the number of independent errors if
+/// each piece is a whole recording; parts of the same recordings share errors, so `dependent_pieces` (at least 1) then gives the degrees.
 motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
-                             std::span<const PredictedPiece> pieces, std::size_t left_out);
+                             std::span<const PredictedPiece> pieces, std::optional<std::size_t> dependent_pieces = {});
 
 }  // namespace heatsoak::calibration

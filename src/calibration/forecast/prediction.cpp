@@ -161,7 +161,7 @@ motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out)
     }
     model = std::move(file.model);
   }
-  return fit_band(model.value(), runs, pieces, left_out.size());
+  return fit_band(model.value(), runs, pieces);
 }
 
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {

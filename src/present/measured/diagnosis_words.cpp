@@ -372,7 +372,7 @@ std::string words_of(const diagnosis::DiagnosisFinding& finding) {
 
 Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   using namespace diagnosis;
-  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun>;
+  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange>;
   using Notes = Kinds<SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
                       TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
   return severity_in<Warnings, Notes, Kinds<>>(finding);
