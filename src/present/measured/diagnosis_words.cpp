@@ -8,17 +8,13 @@
 #include <iterator>
 #include <set>
 #include <span>
-#include <type_traits>
-#include <variant>
 
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
-#include "estimation/log_rows.h"
 #include "estimation/thresholds.h"
 #include "motor/sensor_effect.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
-#include "present/measured/severity_of_kind.h"
 
 namespace heatsoak::present {
 namespace {
@@ -283,100 +279,7 @@ std::string reason_in_words(const attribution::Refusal& refused) {
   return "";
 }
 
-std::string_view it_or_them(std::size_t count) { return count == 1 ? "it" : "them"; }
-
-std::string say(const diagnosis::ExtensionsMayImitate& of) {
-  return fmt::format(
-      "an effect similar to {} may not be found, because the file has {} for better forecasts only; calibrate with --innovations for a "
-      "diagnosis",
-      fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
-}
-
-std::string say(const diagnosis::ContradictingRun& run) {
-  return fmt::format(
-      "{0} contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by {3} K, although {0} alone "
-      "can "
-      "be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}; if so, leave it out",
-      run.run, base::significant(run.usual_K, 2), run.signal.substr(0, run.signal.rfind('_')), base::significant(run.by_others_K, 2),
-      base::significant(run.alone_K, 2));
-}
-
-/// Returns what a law assumes about a signal that no log has, by its row of the table of quantities.
-std::string assumption_in_words(thermal::Signal signal) {
-  const thermal::OperatingQuantity<double>& row = thermal::quantity_of(signal);
-  return row.is_optional ? fmt::format("the {} is treated as unknown", row.lacking)
-                         : fmt::format("the value {} is used", thermal::OperatingPoint<double>{}.*row.value);
-}
-
-std::string say(const diagnosis::SignalsMissing& of) {
-  std::vector<std::string_view> columns;
-  std::vector<std::string> assumptions;
-  for (const thermal::Signal signal : of.signals) {
-    columns.push_back(estimation::column_of(signal));
-    if (std::string assumption = assumption_in_words(signal); std::ranges::find(assumptions, assumption) == assumptions.end()) {
-      assumptions.push_back(std::move(assumption));
-    }
-  }
-  return fmt::format("no log has {}, on which {} depends; {}", fmt::join(columns, " and "), of.effect, fmt::join(assumptions, " and "));
-}
-
-std::string say(const diagnosis::ConditionNotApplied& of) {
-  return fmt::format(
-      "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
-      "runs without that condition",
-      of.effect, estimation::in_words(of.condition), of.type);
-}
-
-std::string say(const diagnosis::ConditionNeverMet& of) {
-  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, estimation::in_words(of.condition));
-}
-
-std::string say(const diagnosis::IntervalsOfDataSheet& /*of*/) {
-  return "the file's intervals are replaced by those of a data sheet, because the file was fitted to some of these runs, which would count "
-         "twice";
-}
-
-std::string say(const diagnosis::HoldoutWasFitted& of) {
-  return fmt::format("the errors of {} are not those of an unseen run, because the motor's file was fitted to it", of.recording);
-}
-
-std::string say(const diagnosis::LossInUnknownHeat& of) {
-  return fmt::format(
-      "not every log has a speed: the loss at speed, up to {} W, is part of the unknown heat; no effect at the stator is named, and no "
-      "curve over another signal is added",
-      base::significant(of.most_W, 2));
-}
-
-std::string say(const diagnosis::TorqueFromCurrent& /*of*/) {
-  return "not every log has a torque: without one, current times torque constant minus the no-load drag is used";
-}
-
-std::string say(const diagnosis::ColumnsNotSearched& of) {
-  return fmt::format("not every log has {}: heat that depends on {} is not searched for; to search for it, leave out the other logs",
-                     fmt::join(of.columns, ", "), it_or_them(of.columns.size()));
-}
-
 }  // namespace
-
-std::string words_of(const diagnosis::DiagnosisFinding& finding) {
-  return std::visit(
-      [](const auto& each) {
-        if constexpr (std::is_constructible_v<calibration::CalibrationFinding, decltype(each)>) {
-          return words_of(calibration::CalibrationFinding(each));
-        } else {
-          return say(each);
-        }
-      },
-      finding);
-}
-
-Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
-  using namespace diagnosis;
-  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange>;
-  using Notes = Kinds<SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
-                      TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
-  return severity_in<Warnings, Notes, Kinds<>>(finding);
-}
 
 std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> all;
