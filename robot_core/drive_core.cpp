@@ -48,7 +48,7 @@ namespace {
   state.check_sum = check_sum_of(state);
 }
 
-/// Opens all bridges. The temperatures are those with which the guards start.
+/// Opens all bridges. The temperatures are those with which the guards start; 0 without a start.
 [[gnu::cold]] void open_all(const State& state, Reason reason, Output& out) {
   out = {};
   out.robot_reason = reason;

@@ -11,7 +11,7 @@ namespace {
 constexpr float kStep_share = 0.2F;
 constexpr float kVeryLong_s = 1e9F;
 
-/// Signals during power-off: no current, speed or airflow. Unknown temperatures take their highest safe value.
+/// Signals during power-off: no current, speed or airflow. Unknown temperatures take their highest safe value, rates that of any age.
 void signals_without_power(const GuardModel& model, float* signal) {
   static_assert(kGuardSignals == 7, "a further signal needs its value without power here, unless that is 0");
   for (int i = 0; i < kGuardSignals; ++i) {
@@ -19,25 +19,21 @@ void signals_without_power(const GuardModel& model, float* signal) {
   }
   signal[guard_ambient_C] = model.hottest_ambient_C;
   signal[guard_neighbour_C] = model.winding_limit_C;
-  const PlausibleRange& age = model.plausible_range[guard_age_h];
-  for (int i = 0; age.is_used && i < age.possible_count; ++i) {
-    signal[guard_age_h] = larger(signal[guard_age_h], age.possible[i]);
-  }
 }
 
 /// Returns a fifth of the shortest time constant. No rate exceeds the largest row sum of the derivatives (Gershgorin).
-float cooling_step_s(const GuardModel& model, const float* signal, const float* state_C) {
+float cooling_step_s(const GuardModel& model, float* signal, const float* state_C) {
   float moved_C[kMostGuardNodes];
   float rate_K_per_s[kMostGuardNodes];
   float moved_K_per_s[kMostGuardNodes];
   float sum_per_s[kMostGuardNodes] = {};
-  model.rates(model.context, signal, state_C, rate_K_per_s);
+  rates_of_any_age(model, signal, state_C, rate_K_per_s);
   for (int node = 0; node < model.node_count; ++node) {
     moved_C[node] = state_C[node];
   }
   for (int from = 0; from < model.node_count; ++from) {
     moved_C[from] += 1.0F;
-    model.rates(model.context, signal, moved_C, moved_K_per_s);
+    rates_of_any_age(model, signal, moved_C, moved_K_per_s);
     moved_C[from] -= 1.0F;
     for (int node = 0; node < model.node_count; ++node) {
       sum_per_s[node] += absolute(moved_K_per_s[node] - rate_K_per_s[node]);
@@ -52,16 +48,16 @@ float cooling_step_s(const GuardModel& model, const float* signal, const float* 
 
 /// One step of the classical method of Runge and Kutta. Raises `peak_C` to the highest temperature of each node during the step; between
 /// its ends a node that first warms and then cools follows a parabola.
-void cool_for(const GuardModel& model, const float* signal, float step_s, float* state_C, float* carry_K, float* peak_C) {
+void cool_for(const GuardModel& model, float* signal, float step_s, float* state_C, float* carry_K, float* peak_C) {
   float rate_K_per_s[4][kMostGuardNodes];
   float ahead_C[kMostGuardNodes];
-  model.rates(model.context, signal, state_C, rate_K_per_s[0]);
+  rates_of_any_age(model, signal, state_C, rate_K_per_s[0]);
   for (int stage = 1; stage < 4; ++stage) {
     const float ahead_s = stage == 3 ? step_s : 0.5F * step_s;
     for (int node = 0; node < model.node_count; ++node) {
       ahead_C[node] = state_C[node] + ahead_s * rate_K_per_s[stage - 1][node];
     }
-    model.rates(model.context, signal, ahead_C, rate_K_per_s[stage]);
+    rates_of_any_age(model, signal, ahead_C, rate_K_per_s[stage]);
   }
   for (int node = 0; node < model.node_count; ++node) {
     const float first = rate_K_per_s[0][node];
@@ -81,7 +77,7 @@ void cool_guard(const GuardModel& model, float elapsed_s, float* state_C) {
   const bool is_known = elapsed_s >= 0.0F;
   float signal[kGuardSignals];
   signals_without_power(model, signal);
-  const float longest_s = cooling_step_s(model, signal, state_C);
+  float longest_s = 0.0F;
   float carry_K[kMostGuardNodes] = {};
   float peak_C[kMostGuardNodes];
   for (int node = 0; node < model.node_count; ++node) {
@@ -89,6 +85,8 @@ void cool_guard(const GuardModel& model, float elapsed_s, float* state_C) {
   }
   float left_s = is_known ? elapsed_s : kVeryLong_s;
   for (int step = 0; step < kMostCoolingSteps && left_s > 0.0F; ++step) {
+    // The time constants may change while the motor cools.
+    longest_s = step % 4 == 0 ? cooling_step_s(model, signal, state_C) : longest_s;
     const float step_s = smaller(left_s, longest_s);
     cool_for(model, signal, step_s, state_C, carry_K, peak_C);
     left_s -= step_s;

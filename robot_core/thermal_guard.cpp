@@ -177,6 +177,19 @@ float hottest_body_C(const GuardModel& model, const GuardState& state) {
   return heatsoak_current_A(&model.table, &row, square_at_A2(model.table, row, winding_C));
 }
 
+[[gnu::cold, gnu::noinline]] void rates_of_any_age(const GuardModel& model, float* signal, const float* state_C, float* rate_K_per_s) {
+  model.rates(model.context, signal, state_C, rate_K_per_s);
+  const PlausibleRange& age = model.plausible_range[guard_age_h];
+  for (int i = 0; age.is_used && i < age.possible_count; ++i) {
+    float of_age_K_per_s[kMostGuardNodes];
+    signal[guard_age_h] = age.possible[i];
+    model.rates(model.context, signal, state_C, of_age_K_per_s);
+    for (int node = 0; node < model.node_count; ++node) {
+      rate_K_per_s[node] = larger(rate_K_per_s[node], of_age_K_per_s[node]);
+    }
+  }
+}
+
 namespace {
 
 /// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
@@ -187,7 +200,7 @@ namespace {
   signal[guard_ambient_C] = model.hottest_ambient_C;
   signal[guard_neighbour_C] = model.winding_limit_C;
   float rate_K_per_s[kMostGuardNodes];
-  model.rates(model.context, signal, state.state_C, rate_K_per_s);
+  rates_of_any_age(model, signal, state.state_C, rate_K_per_s);
   for (int node = 0; node < model.node_count; ++node) {
     const float heated_C = state.state_C[node] + gap_s * larger(0.0F, rate_K_per_s[node]);
     state.state_C[node] = larger(state.state_C[node], smaller(heated_C, model.winding_limit_C));

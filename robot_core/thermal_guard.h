@@ -89,6 +89,10 @@ void start_guard(const GuardModel& model, GuardState& state, float body_C);
 /// Returns true if the state was started, has a valid check sum and no flipped bit in its gap, and holds plausible temperatures.
 bool is_started(const GuardModel& model, const GuardState& state);
 
+/// Calculates the largest rate of each node over the possible ages of the motor, which the drive core does not know. Changes the age in
+/// `signal`.
+void rates_of_any_age(const GuardModel& model, float* signal, const float* state_C, float* rate_K_per_s);
+
 /// Updates the check sum after a change of the temperatures from outside.
 void seal(GuardState& state);
 

@@ -164,7 +164,10 @@ std::string explanation(const Outcome& outcome) {
     return outcome.reason;
   }
   const std::string& detail = outcome.measured->detail;
-  return outcome.passed || detail.empty() ? detail : fmt::format("{}: {}", outcome.reason, detail);
+  if (outcome.passed) {
+    return detail;
+  }
+  return detail.empty() ? outcome.reason : fmt::format("{}: {}", outcome.reason, detail);
 }
 
 std::string junit_xml(std::span<const Outcome> outcomes, std::string_view version) {

@@ -67,6 +67,9 @@ std::string interval_text(const AnswerNumber& number, const ThresholdType& type)
   if (is_percentile || key.find("probability") != std::string_view::npos) {
     return fmt::format("the {} itself is compared: the answer has no interval for it", is_percentile ? "percentile" : "probability");
   }
+  if (key == "time_to_limit_s") {
+    return "the time of the nominal motor is compared";
+  }
   return key == "nominal" ? "the nominal value is compared" : "";
 }
 

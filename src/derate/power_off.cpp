@@ -1,6 +1,7 @@
 #include "derate/power_off.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "derate/plausible_range.h"
 #include "thermal/steady_state.h"
@@ -38,14 +39,19 @@ std::array<double, observed::kSignalCount> signals_without_power(const Derating&
       case thermal::WithoutPower::winding_limit:
         signals[i] = derating.rules.limits.winding_C;
         break;
-      case thermal::WithoutPower::largest:
-        if (const PlausibleRange range = plausible_range(derating, static_cast<observed::Signal>(i)); range.is_used) {
-          signals[i] = std::ranges::max(range.values);
-        }
+      case thermal::WithoutPower::any:
         break;
     }
   }
   return signals;
+}
+
+std::vector<float> ages_without_power_h(const Derating& derating) {
+  std::vector<float> ages_h = plausible_range(derating, observed::age).values;
+  if (!ages_h.empty() && std::ranges::find(ages_h, 0.0F) == ages_h.end()) {
+    ages_h.insert(ages_h.begin(), 0.0F);  // for a motor that warms in hot air
+  }
+  return ages_h;
 }
 
 std::vector<double> resting_C(const Derating& derating, std::span<const int> rate_steps) {
@@ -54,9 +60,17 @@ std::vector<double> resting_C(const Derating& derating, std::span<const int> rat
   thermal::FormulaRun<double> run(derating.observer.formula(), rate_steps);
   std::vector<double> inputs(observed::kSignalCount + nodes);
   std::ranges::copy(signals_without_power(derating), inputs.begin());
+  std::vector<float> ages_h = ages_without_power_h(derating);
+  ages_h.resize(std::max<std::size_t>(1, ages_h.size()));
+  std::vector<double> of_age_K_per_s(nodes);
   const thermal::RateFunction rates = [&](std::span<const double> state_C, std::span<double> rate_K_per_s) {
     std::ranges::copy(state_C, inputs.begin() + observed::kSignalCount);
-    run.run(inputs, rate_K_per_s);
+    std::ranges::fill(rate_K_per_s, -std::numeric_limits<double>::infinity());
+    for (const float age_h : ages_h) {
+      inputs[observed::age] = static_cast<double>(age_h);
+      run.run(inputs, of_age_K_per_s);
+      std::ranges::transform(rate_K_per_s, of_age_K_per_s, rate_K_per_s.begin(), [](double a, double b) { return std::max(a, b); });
+    }
   };
   if (const auto rest = thermal::steady_state(rates, std::vector<double>(nodes, air_C))) {
     for (const double enlarged : {1.0, 1.05, 1.1, 1.2, 1.4, 2.0, 4.0}) {

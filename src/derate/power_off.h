@@ -10,8 +10,12 @@
 namespace heatsoak::derate {
 
 /// Inputs of the observer without power, in the order of observed::Signal, by FirmwareInput::without_power: no current, speed or airflow,
-/// the hottest air, a neighbour at the winding limit and the highest age.
+/// the hottest air, a neighbour at the winding limit, and 0 for an age, which is any of ages_without_power_h().
 std::array<double, observed::kSignalCount> signals_without_power(const Derating& derating);
+
+/// Possible ages of the motor in h. Whether a high or a low one is worse depends on the law and on the node, so each node takes the largest
+/// rate over all of them. Empty if no law depends on the age.
+std::vector<float> ages_without_power_h(const Derating& derating);
 
 /// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. They
 /// bound what a restored guard may assume of time that it does not simulate: temperatures that are at most c ≥ 0 above these stay so for

@@ -80,6 +80,11 @@ void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect
       const std::vector<std::string> before(known.begin(), known.end() - 1);
       entry.reader.problem(
           role.role, fmt::format("'{}' is not a node; expected {} or {}", effect.nodes.back(), fmt::join(before, ", "), known.back()));
+    } else if (role.is_surroundings && effect.nodes.back() != role.default_node) {
+      entry.reader.problem(role.role, fmt::format("'{}' is a node of the motor; expected '{}'", effect.nodes.back(), role.default_node));
+    } else if (role.is_surroundings && effect.nodes.front() == role.default_node) {
+      entry.reader.problem(entry.type->nodes.front().role,
+                           fmt::format("'{}' is the surroundings; expected a node of the motor", role.default_node));
     }
   }
 }

@@ -65,7 +65,7 @@ Document command_limits_description() {
           "The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number with a 95 % "
           "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit, "
           "except "
-          "that the null of a time means never: time_to_limit_s, rest_half_s, rest_all_s. The command runs in the folder of the check file "
+          "that null means never in time_to_limit_s. The command runs in the folder of the check file "
           "and "
           "writes no file."}};
   document.listings.push_back({"in a check file:",

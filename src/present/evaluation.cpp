@@ -311,7 +311,7 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
   std::string text;
   for (const select::RestOfHotMotor& each : rests) {
     const std::string rest =
-        each.all_s ? duration_text(*each.all_s) : fmt::format("never from {} of {} places in the duty", each.starts_never, each.starts);
+        each.all_s ? duration_text(*each.all_s) : fmt::format("more than {} from {} of {} places in the duty", duration_text(select::kLongestRest_s), each.starts_never, each.starts);
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", duration_text(each.play_s), rest);
   }
   return fmt::format(

@@ -61,6 +61,7 @@ Json json(const select::MotorEvaluation& each) {
           {"delivered_share", rounded(each.least_torque_share, 4)},
           {"short_time_share", rounded(each.short_time_share, 4)},
           {"short_probability", rounded(each.short_probability, 4)},
+          {"short_probability_ci95", json(each.short_interval, 4)},
           {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
           {"runaway", each.destroyed}};
 }

@@ -20,6 +20,7 @@ struct NodeRole {
   std::string_view default_node;  ///< node that plays the role by default
   /// Index of the parameter that is the node's heat capacity if the effect adds a node of its own.
   std::optional<int> own_capacity = {};
+  bool is_surroundings = false;  ///< the surroundings of the motor: no node of the motor can play the role
 };
 
 /// Proposal of an effect that a model may lack: parameter values typical for a motor of about 50 W, one variant for each distinguishable

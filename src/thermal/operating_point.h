@@ -76,7 +76,7 @@ enum class WithoutPower {
   zero,           ///< the motor is at rest
   hottest_air,    ///< the hottest declared air
   winding_limit,  ///< the winding limit, for the temperature of another motor
-  largest         ///< the largest of its possible values
+  any             ///< unknown: each node takes the largest rate over the possible values
 };
 
 /// Quantity as an input of the guard in the firmware. The constructor makes each row state the value without power.
@@ -129,7 +129,7 @@ inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::vehicle_speed_m_per_s, "vehicle_speed", "m/s", 2.0, AveragingRule::mean, true, Signal::vehicle_speed, "vehicle_speed_m_per_s", FromColumn::magnitude, "vehicle speed", true, "magnitude of the vehicle's speed", true,
                          FirmwareInput{"vehicle_speed_m_per_s", "speed of the robot through the air, not of its wheels; 0 if it is not known", WithoutPower::zero}},
     OperatingQuantity<S>{&P::age_h, "age", "h", 100.0, AveragingRule::mean, false, Signal::age, "age_h", FromColumn::value, "hours of running", true, "operating hours", false,
-                         FirmwareInput{"age_h", "operating hours of the motor", WithoutPower::largest}},
+                         FirmwareInput{"age_h", "operating hours of the motor", WithoutPower::any}},
     OperatingQuantity<S>{&P::neighbour_C, "neighbour_temperature", "degC", 90.0, AveragingRule::mean, false, Signal::neighbour_temperature, "neighbour_C", FromColumn::value, "temperature of the neighbour", false, "", false,
                          FirmwareInput{"neighbour_C", "temperature of the motor next to this one; the winding's limit if it is not known", WithoutPower::winding_limit}, true},
     OperatingQuantity<S>{&P::ambient_C, "ambient", "degC", 20.0, AveragingRule::mean, false, {}, "ambient_C", FromColumn::computed, "", false, "", false,

@@ -200,6 +200,12 @@ TEST_F(CommandChecks, NullOfATimeIsNever) {
   EXPECT_THAT(with_new_limits(text_, all, 0.05), HasSubstr("time_to_limit_s = \"at most 60 s\"")) << "no time is long enough";
 }
 
+TEST_F(CommandChecks, AViolatedLimitSaysSo) {
+  const std::vector<Outcome> all = outcomes("idle_s = \"at least 5 s\"\n");
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_THAT(explanation(all[0]), HasSubstr("is below the limit"));
+}
+
 TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
   const std::vector<Outcome> all = outcomes(
       "margin_A = \"at least 1 A\"\n"

@@ -30,7 +30,7 @@ CallGraph core_graph(const std::string& files, const std::string& rates, const s
     }
     const bool is_planner = caller.find("control_body_velocity") != std::string::npos || caller.find("follow_command") != std::string::npos;
     const bool is_guard = caller.find("guard") != std::string::npos || caller.find("hottest") != std::string::npos ||
-                          caller.find("heat_for_gap") != std::string::npos;
+                          caller.find("rates_of_any_age") != std::string::npos;
     EXPECT_TRUE(is_planner != is_guard) << caller << " calls through a pointer that this test does not know";
     std::set<std::string> targets = named(is_planner ? planner : rates);
     if (is_planner && !planner.empty()) {

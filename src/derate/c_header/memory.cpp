@@ -140,17 +140,19 @@ static inline void @_cool(@_law law, const float *resting_C, float elapsed_s, fl
   float peak_C[@NODES@];
   float left_s = is_known ? elapsed_s : 1e9f;
   float above_K = 0.0f;
-  float longest_s;
+  float longest_s = 0.0f;
   int node;
   int step;
   @_clear((unsigned char *)&off, (int)sizeof off);
-@OFF@  longest_s = @_cooling_step_s(law, &off, state_C);
-  for (node = 0; node < @NODES@; ++node) {
+@OFF@  for (node = 0; node < @NODES@; ++node) {
     peak_C[node] = state_C[node];
     carry_K[node] = 0.0f;
   }
   for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
-    const float step_s = left_s < longest_s ? left_s : longest_s;
+    float step_s;
+    /* The time constants may change while the motor cools. */
+    longest_s = (step % 4) == 0 ? @_cooling_step_s(law, &off, state_C) : longest_s;
+    step_s = left_s < longest_s ? left_s : longest_s;
     @_cool_for(law, &off, step_s, state_C, carry_K, peak_C);
     left_s -= step_s;
   }
@@ -240,11 +242,11 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     return @_nothing_restored;
   }
   if (!(unsaved_s <= 0.0f)) {
-    @_heat(@_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
-    @_heat(@_nominal_rates, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
+    @_heat(@GUARD_LAW@, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
+    @_heat(@NOMINAL_LAW@, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
   }
-  @_cool(@_rates, @_resting_C, elapsed_s, state->state_C);
-  @_cool(@_nominal_rates, @NOMINAL_RESTING@, elapsed_s, state->nominal_C);
+  @_cool(@GUARD_LAW@, @_resting_C, elapsed_s, state->state_C);
+  @_cool(@NOMINAL_LAW@, @NOMINAL_RESTING@, elapsed_s, state->nominal_C);
   for (node = 0; node < @NODES@; ++node) {
     state->state_C[node] = state->state_C[node] > least_C ? state->state_C[node] : least_C;
     state->nominal_C[node] = state->nominal_C[node] > least_C ? state->nominal_C[node] : least_C;
@@ -259,11 +261,11 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
 
 /// Assigns the values without power that are not 0.
 std::string unwatched_signals(const Source& source, std::string_view input) {
-  const auto values = signals_without_power(source.derating);
   std::string text;
   for (const observed::Signal signal : source.signals) {
     switch (observed::signals()[static_cast<std::size_t>(signal)].without_power) {
       case thermal::WithoutPower::zero:
+      case thermal::WithoutPower::any:
         break;
       case thermal::WithoutPower::hottest_air:
         text += fmt::format("  {}.{} = {}_HOTTEST_AMBIENT_C;\n", input, name_of(signal), source.capital);
@@ -271,10 +273,41 @@ std::string unwatched_signals(const Source& source, std::string_view input) {
       case thermal::WithoutPower::winding_limit:
         text += fmt::format("  {}.{} = {}_WINDING_LIMIT_C;\n", input, name_of(signal), source.capital);
         break;
-      case thermal::WithoutPower::largest:
-        text += fmt::format("  {}.{} = {};\n", input, name_of(signal), literal(values[signal]));
-        break;
     }
+  }
+  return text;
+}
+
+constexpr std::string_view kAnyAge = R"(/* Largest rate of each node over the possible ages: without power the age is not known. */
+static inline void @FUNCTION@(const @_input *input, const float *state_C, float *rate_K_per_s) {
+  @_input each = *input;
+  float of_age_K_per_s[@NODES@];
+  int i;
+  int node;
+  for (i = 0; i < @AGES@; ++i) {
+    each.age_h = @_any_age_h[i];
+    @LAW@(&each, state_C, of_age_K_per_s);
+    for (node = 0; node < @NODES@; ++node) {
+      rate_K_per_s[node] = i == 0 || of_age_K_per_s[node] > rate_K_per_s[node] ? of_age_K_per_s[node] : rate_K_per_s[node];
+    }
+  }
+}
+
+)";
+
+/// Functions of the laws at an unknown age; empty if no law depends on it.
+std::string laws_of_any_age(const Source& source, const Words& words) {
+  const std::vector<float> ages_h = ages_without_power_h(source.derating);
+  if (ages_h.empty()) {
+    return {};
+  }
+  std::string text = array(source.prefix + "_any_age_h", {ages_h.begin(), ages_h.end()}) + "\n";
+  for (const std::string_view law : {"rates", "nominal_rates"}) {
+    Words own{{"@FUNCTION@", fmt::format("{}_{}_of_any_age", source.prefix, law)},
+              {"@LAW@", fmt::format("{}_{}", source.prefix, law)},
+              {"@AGES@", std::to_string(ages_h.size())}};
+    own.insert(own.end(), words.begin(), words.end());
+    text += replaced(kAnyAge, own);
   }
   return text;
 }
@@ -300,8 +333,11 @@ std::string memory_functions(const Source& source, unsigned signature) {
   }
   const std::vector<double> guard_C = resting_C(source.derating, source.derating.observer.rate_steps());
   const std::vector<double> nominal_C = resting_C(source.derating, source.derating.observer.nominal_rate_steps());
+  const bool has_age = !ages_without_power_h(source.derating).empty();
   const Words words{
       {"@OFF@", unwatched_signals(source, "off")},
+      {"@GUARD_LAW@", has_age ? "@_rates_of_any_age" : "@_rates"},
+      {"@NOMINAL_LAW@", has_age ? "@_nominal_rates_of_any_age" : "@_nominal_rates"},
       {"@NOMINAL_RESTING@", nominal_C == guard_C ? "@_resting_C" : "@_nominal_resting_C"},
       {"@ON@", unwatched_signals(source, "on") + (has_one_speed ? "  on.speed_rad_per_s = @CAP@_UNKNOWN_SPEED_RAD_PER_S;\n" : "")},
       {"@SPEED_LIST@", has_one_speed ? "" : fmt::format("  const float possible_rad_per_s[@SPEEDS@] = {{{}}};\n", speed_list)},
@@ -314,7 +350,7 @@ std::string memory_functions(const Source& source, unsigned signature) {
       {"@", source.prefix}};
   return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n#define {0}_MOST_HEATING_STEPS {3}\n",
                      source.capital, signature, kMostCoolingSteps, kMostHeatingSteps) +
-         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + replaced(kCool, words) +
+         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + laws_of_any_age(source, words) + replaced(kCool, words) +
          replaced(kUnsaved, words) + replaced(kRestore, words);
 }
 

@@ -24,7 +24,7 @@ double start_value(const Derating& derating, const observed::SignalSpec& signal)
     case thermal::WithoutPower::winding_limit:
       return derating.rules.limits.winding_C;
     case thermal::WithoutPower::zero:
-    case thermal::WithoutPower::largest:
+    case thermal::WithoutPower::any:
       break;
   }
   return 0.0;

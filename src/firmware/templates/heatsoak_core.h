@@ -110,7 +110,8 @@ bool heatsoak_core_restore(heatsoak_core_state *state, const heatsoak_core_state
 /* No samples, and the command to coast. */
 void heatsoak_core_clear(heatsoak_core_input *input);
 
-/* One control step. A state that was not started, or is damaged, is started again with a hot guard; that step opens all bridges. */
+/* One control step. A state that was not started opens all bridges. A damaged one is started again with a hot guard; that step opens all
+ * bridges. */
 void heatsoak_core_step(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output);
 
 /* The same with the planner of pose targets, which the linker leaves out if this is not called. It plans anew in every step: 86 000

@@ -26,7 +26,7 @@ EffectType neighbour_coupling() {
           "no heat is counted.",
       .equation = "P_node→surroundings = G·(T_node − T_neighbour)",
       .reference = "Newton's law of cooling; the neighbour's temperature is given and is part of the surroundings",
-      .nodes = {{"node", "stator"}, {"surroundings", "ambient"}},
+      .nodes = {{"node", "stator"}, {"surroundings", "ambient", {}, true}},
       .parameters = {{"conductance", "W/K", base::Range::non_negative(), "conductance between the two motors"}},
       .typical = "0.02 to 0.1 W/K between motors on one plate",
       .confounded_with = "Confounded with third_node and enclosure_warm_up. Running the neighbour alone separates them.",
