@@ -109,8 +109,8 @@ enum class Target : unsigned char {
   moving_on,
 };
 
-/// Plans the fastest motion of one axis. A start outside the limits is first led back inside along the shortest path. The accuracy is that
-/// of docs/planners.md; a motion that cannot reach it has the result out_of_range.
+/// Plans the fastest motion of one axis. A start outside the limits is first led back inside along the shortest path. The accuracy
+/// is stated in docs/planners.md; out_of_range if rounding errors exceed it.
 template <typename Real>
 PlanResult plan_position(const AxisState<Real>& start, const AxisState<Real>& target, const AxisLimits<Real>& limits,
                          Trajectory<Real>& trajectory, Target how = Target::at_position);

@@ -23,6 +23,10 @@ std::vector<float> ages_without_power_h(const Derating& derating);
 /// rise over the air is enlarged until it does; if that does not help, the result is the winding limit.
 std::vector<double> resting_C(const Derating& derating, std::span<const int> rate_steps);
 
+/// Largest number of steps of a generated restore: cool-down in Runge-Kutta steps, and heating of unsaved time in periods of the guard.
+inline constexpr int kMostCoolingSteps = 1024;
+inline constexpr int kMostHeatingSteps = 4096;
+
 /// Larger than the last digit of a temperature in single precision and in the integer form.
 inline constexpr double kRounding_K = 0.01;
 

@@ -26,8 +26,8 @@ std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> colum
 /// confounded with other differences between the runs. Returns the names of the removed columns.
 std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> of_model);
 
-/// Copies columns of a run, at most kLogColumns, into its operating points in this order. Gaps take the nearest known value. A column
-/// that the run lacks becomes 0 and unknown (OperatingPoint::known).
+/// Copies columns of a run, at most kLogColumns, into its operating points in this order. Gaps take the nearest known value. If the
+/// run lacks a column, its value is 0 and unknown (OperatingPoint::known).
 void set_columns(MeasuredRun& run, std::span<const std::string> keys);
 void set_columns(std::vector<MeasuredRun>& runs, std::span<const std::string> keys);
 

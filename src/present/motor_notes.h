@@ -9,7 +9,7 @@
 
 namespace heatsoak::present {
 
-/// Whether a prediction contains all motors of a robot, so that each has the temperature of its neighbours.
+/// Knowledge of the neighbours: a prediction of all motors of a robot has their temperatures, one of a single motor does not.
 enum class Neighbours {
   unknown,              ///< one motor on a duty
   known,                ///< all motors in closed loop

@@ -29,8 +29,8 @@ struct Direction {
 /// Friction torque of wheel i at the wheel over the direction of travel θ (local frame):
 ///   f(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)) + sign(ω_i)·A·sin(2θ + ψ_i).
 /// The first two terms are equation (3) of the ETDP 2025 of RoboTeam Twente; the term with A is in their firmware. For φ_i of the wheel's
-/// rolling direction t_i, sin(θ + φ_i) = t_i·v/|v|; a measured φ_i differs by phase_offset. The sign is that of the wheel's speed ω_i, so
-/// that friction never drives.
+/// rolling direction t_i, sin(θ + φ_i) = t_i·v/|v|; a measured φ_i differs by phase_offset. The sign of ω_i, the
+/// wheel's speed, makes friction always brake.
 /// In rotation the torque blends into a constant c: (1 − γ)·f + γ·sign(ω)·c, γ = ½·(1 − cos(π·min(1, R·|yaw rate|/|v|))). The firmware
 /// counts θ from the left to straight ahead: its phase is −ψ here.
 struct HeadingFriction {

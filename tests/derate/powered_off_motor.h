@@ -141,8 +141,8 @@ inline std::vector<std::vector<double>> saved_temperatures_C(std::size_t nodes, 
   return all;
 }
 
-/// Expects that no node restored after `elapsed_s` (negative: an unknown time) is colder than the solution, nor warmer than it for as long
-/// as the restore simulates, nor far above what a node can have after that. `restored_C` returns the restored temperatures for saved ones.
+/// Compares restored temperatures with the solution; a negative time is unknown. No node may be colder. Within the simulated time it may not
+/// be warmer either, and later not far above its possible temperatures. `restored_C` returns the restored temperatures for saved ones.
 template <class Restored>
 void expect_safe_and_useful(const PoweredOffMotor& motor, const Restored& restored_C) {
   const std::vector<double> rest_C = motor.cooled(std::vector<double>(motor.nodes(), 60.0), 1e6).end_C;

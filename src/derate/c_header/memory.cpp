@@ -323,8 +323,6 @@ std::string resting_temperatures(const Source& source, const std::vector<double>
 
 std::string memory_functions(const Source& source, unsigned signature) {
   const std::size_t nodes = source.derating.observer.state_count();
-  constexpr int kMostCoolingSteps = 1024;
-  constexpr int kMostHeatingSteps = 4096;
   const std::vector<float> speeds = plausible_range(source.derating, observed::speed).values;
   const bool has_one_speed = speeds.size() == 1;
   std::string speed_list;

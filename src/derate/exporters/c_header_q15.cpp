@@ -358,8 +358,6 @@ std::string write_c_header_q15(const Derating& derating) {
                               {"@CAP@", capital},
                               {"@", prefix}};
   const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
-  constexpr int kMostCoolingSteps = 1024;
-  constexpr int kMostHeatingSteps = 4096;
   const auto period_us = static_cast<std::int64_t>(std::ceil(1e6 * derating.options.period_s));
   return c_header::wrapped(
       head(derating, prefix, lines, table) +

@@ -23,7 +23,7 @@ struct QuantisedTable {
   std::int32_t straight_below_mA = 1;
   std::int32_t most_speed_mrad_per_s = 0;
   std::int32_t no_current_speed_mrad_per_s = 1;
-  std::int32_t winding_per_stator_K = 1;  ///< as CurrentTable::winding_per_stator_K, a ratio in K per K
+  std::int32_t winding_per_stator_K = 1;  ///< ratio in K per K, equal to CurrentTable::winding_per_stator_K
 
   [[nodiscard]] heatsoak_integer_table table() const;
   /// Returns the same table in A, rad/s and °C, without its bound. Its currents are those of the integers before they are rounded down to
