@@ -28,8 +28,10 @@ struct Axis {
 /// Lists the runs in the order in which they are drawn.
 std::string listed(const std::vector<std::string>& runs) {
   constexpr std::size_t kMost = 6;
-  return runs.size() > kMost ? fmt::format("{} runs, {} to {}", runs.size(), runs.front(), runs.back())
-                             : fmt::format("{}", fmt::join(runs, ", "));
+  constexpr std::size_t kMostLetters = 40;  // titles of panels are one line
+  std::string names = runs.size() > kMost ? fmt::format("{} runs, {} to {}", runs.size(), runs.front(), runs.back())
+                                          : fmt::format("{}", fmt::join(runs, ", "));
+  return names.size() <= kMostLetters ? names : fmt::format("{} run{}", runs.size(), runs.size() == 1 ? "" : "s");
 }
 
 /// The two models whose residuals are compared.
