@@ -220,7 +220,7 @@ TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
       rests.push_back(each.words);
     }
   }
-  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("(never from 3 of 4 places"))));
+  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("5 min (more than 60 min from 3 of 4 places"))));
 }
 
 TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {
