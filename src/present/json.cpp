@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "present/document.h"
+
 namespace heatsoak::present {
 
 Json rounded(double value, int decimals) {
@@ -16,6 +18,17 @@ Json rounded(double value, int decimals) {
 }
 
 Json rounded(const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : nullptr; }
+
+void add_notes(Json& json, std::span<const Note> notes) {
+  json["notes"] = Json::array();
+  json["warnings"] = Json::array();
+  for (const Note& each : notes) {
+    json["notes"].push_back(each.words);
+    if (each.severity == Severity::warning) {
+      json["warnings"].push_back(each.words);
+    }
+  }
+}
 
 Json failure_json(const base::Failure& failure) {
   Json diagnostics = Json::array();

@@ -3,17 +3,22 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak::present {
 
 using Json = nlohmann::ordered_json;
+struct Note;
 
 /// Returns a JSON number rounded to `decimals`, or null for NaN and infinity.
 Json rounded(double value, int decimals);
 /// Returns a JSON number rounded to `decimals`, or null without a value.
 Json rounded(const std::optional<double>& value, int decimals);
+
+/// Adds the keys "notes", the words of all notes, and "warnings", the words of those with the severity warning.
+void add_notes(Json& json, std::span<const Note> notes);
 
 /// Returns the answer of a command that failed.
 Json failure_json(const base::Failure& failure);

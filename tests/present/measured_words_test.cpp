@@ -9,16 +9,20 @@
 
 #include "calibration/admission.h"
 #include "calibration/calibrate.h"
+#include "calibration/calibration_job.h"
+#include "calibration/prediction_job.h"
 #include "diagnosis/findings.h"
 #include "estimation/findings.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
+#include "present/measured/calibration.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/failure_words.h"
 #include "present/measured/friction_words.h"
 #include "present/measured/log_words.h"
+#include "present/measured/prediction.h"
 #include "present/measured/run_words.h"
 #include "recording/quality.h"
 
@@ -225,6 +229,27 @@ TEST(WordsOfDiagnosis, Findings) {
   for (const auto& [finding, severity] : severities) {
     EXPECT_EQ(severity_of(finding), severity) << words_of(finding);
   }
+}
+
+TEST(Calibration, JsonKeepsTheSeverityOfWarnings) {
+  calibration::CalibrationAnswer answer;
+  answer.calibration.fit.flux.rms_W = {0.0, 0.0};
+  answer.calibration.forecast.emplace();
+  answer.calibration.findings = {calibration::FitStoppedEarly{}, calibration::PoorFit{}};
+  const Json json = calibration_json({}, answer, {}, "model.toml");
+  EXPECT_EQ(json["notes"].size(), 2U);
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_EQ(json["warnings"][0], words_of(answer.calibration.findings[1]));
+  EXPECT_EQ(calibration_document({}, answer, {}).notes.size(), 2U);
+}
+
+TEST(Prediction, JsonKeepsTheSeverityOfWarnings) {
+  calibration::PredictionAnswer answer;
+  answer.warnings = {calibration::FittedRun{"bench.csv"}};
+  const Json json = prediction_json({}, answer, {});
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("the error of bench.csv is not a forecast error"));
+  EXPECT_EQ(json["notes"], json["warnings"]);
 }
 
 TEST(Diagnosis, PageAndJsonKeepTheSeverityOfWarnings) {

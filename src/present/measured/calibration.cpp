@@ -99,6 +99,31 @@ std::string heat_words(const calibration::Calibration& result) {
 
 }  // namespace
 
+std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings) {
+  const calibration::Calibration& result = answer.calibration;
+  std::vector<Note> all;
+  // A wrong unit makes all other warnings meaningless, so it comes first.
+  for (const std::string& note : words_of(answer.admission.notes)) {
+    all.push_back({Severity::warning, note});
+  }
+  for (const calibration::GrownError& each : result.worse) {
+    all.push_back({Severity::warning, words_of(each)});
+  }
+  for (const calibration::OpenDirection& each : result.open) {
+    all.push_back(
+        {Severity::note, fmt::format("Not identifiable: {} ({}). To determine it: {}.", parameter_words(each), reason_words(each),
+                                     each.remedy == result.next_experiment ? "the next experiment above" : words_of(each.remedy))});
+  }
+  for (const calibration::CalibrationFinding& each : result.findings) {
+    all.push_back({severity_of(each), words_of(each)});
+  }
+  // Rejected samples rank below notes that limit the answer.
+  for (const std::string& note : reading_words(readings)) {
+    all.push_back({Severity::background, note});
+  }
+  return all;
+}
+
 Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                               std::span<const recording::LogReading> readings) {
   const calibration::Calibration& result = answer.calibration;
@@ -117,24 +142,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   add_errors(errors, "fit", result.fit_error);
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
-  // A wrong unit makes all other warnings meaningless, so it comes first.
-  for (const std::string& note : words_of(answer.admission.notes)) {
-    document.add_note(Severity::warning, note);
-  }
-  for (const calibration::GrownError& each : result.worse) {
-    document.add_note(Severity::warning, words_of(each));
-  }
-  for (const calibration::OpenDirection& each : result.open) {
-    document.add_note(Severity::note,
-                      fmt::format("Not identifiable: {} ({}). To determine it: {}.", parameter_words(each), reason_words(each),
-                                  each.remedy == result.next_experiment ? "the next experiment above" : words_of(each.remedy)));
-  }
-  for (const calibration::CalibrationFinding& each : result.findings) {
-    document.add_note(severity_of(each), words_of(each));
-  }
-  // Rejected samples rank below notes that limit the answer.
-  for (const std::string& note : reading_words(readings)) {
-    document.add_note(Severity::background, note);
+  for (const Note& each : calibration_notes(answer, readings)) {
+    document.add_note(each.severity, each.words);
   }
   return document;
 }

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "calibration/calibration_job.h"
 #include "present/document.h"
@@ -13,6 +14,8 @@ namespace heatsoak::present {
 /// Returns the document of a calibration. `readings` are the reports of the logs.
 Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                               std::span<const recording::LogReading> readings);
+/// Returns the notes: warnings about units and grown errors first, remarks about the logs last.
+std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings);
 /// Returns the answer as JSON. `out` is the name of the model's file.
 Json calibration_json(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                       std::span<const recording::LogReading> readings, const std::string& out);

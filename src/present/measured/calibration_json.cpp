@@ -47,14 +47,6 @@ Json forecast_json(const calibration::Calibration& calibration) {
           {"band", band_json(forecast.band)}};
 }
 
-/// Returns all remarks and findings as sentences.
-std::vector<std::string> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings) {
-  std::vector<std::string> all = reading_words(readings);
-  std::ranges::move(words_of(answer.admission.notes), std::back_inserter(all));
-  std::ranges::move(words_of(answer.calibration.findings), std::back_inserter(all));
-  return all;
-}
-
 }  // namespace
 
 Json calibration_json(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
@@ -82,27 +74,28 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
     }
     correlation.push_back(std::move(row));
   }
-  return {{"schema", "heatsoak.calibration/1"},
-          {"motor", motor.id},
-          {"runs", result.runs.size()},
-          {"parameters", parameters},
-          {"correlation", correlation},
-          {"error", error_json(result.fit_error, true)},
-          {"error_before", error_json(result.fit_error, false)},
-          {"holdout_error", error_json(result.holdout_error, true)},
-          {"holdout_error_before", error_json(result.holdout_error, false)},
-          {"holdout", {{"before", runs_json(result.holdout_before)}, {"after", runs_json(result.holdout_after)}}},
-          {"forecast", forecast_json(result)},
-          {"latent_flux",
-           {{"winding_W", number(result.fit.flux.rms_W[0])},
-            {"stator_W", number(result.fit.flux.rms_W[1])},
-            {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
-          {"rejected_share", number(result.fit.rejected_share)},
-          {"not_identifiable", open},
-          {"next_experiment", next_steps_words(answer)},
-          {"worse_than_before", words_of(result.worse)},
-          {"notes", calibration_notes(answer, readings)},
-          {"model", out}};
+  Json json = {{"schema", "heatsoak.calibration/1"},
+               {"motor", motor.id},
+               {"runs", result.runs.size()},
+               {"parameters", parameters},
+               {"correlation", correlation},
+               {"error", error_json(result.fit_error, true)},
+               {"error_before", error_json(result.fit_error, false)},
+               {"holdout_error", error_json(result.holdout_error, true)},
+               {"holdout_error_before", error_json(result.holdout_error, false)},
+               {"holdout", {{"before", runs_json(result.holdout_before)}, {"after", runs_json(result.holdout_after)}}},
+               {"forecast", forecast_json(result)},
+               {"latent_flux",
+                {{"winding_W", number(result.fit.flux.rms_W[0])},
+                 {"stator_W", number(result.fit.flux.rms_W[1])},
+                 {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
+               {"rejected_share", number(result.fit.rejected_share)},
+               {"not_identifiable", open},
+               {"next_experiment", next_steps_words(answer)},
+               {"worse_than_before", words_of(result.worse)},
+               {"model", out}};
+  add_notes(json, calibration_notes(answer, readings));
+  return json;
 }
 
 }  // namespace heatsoak::present

@@ -117,18 +117,6 @@ Json untested_json(const std::vector<attribution::UntestedEffect>& untested) {
   return words;
 }
 
-/// Adds all notes and, once more, those that are warnings.
-void add_notes(Json& json, const std::vector<Note>& notes) {
-  json["notes"] = Json::array();
-  json["warnings"] = Json::array();
-  for (const Note& each : notes) {
-    json["notes"].push_back(each.words);
-    if (each.severity == Severity::warning) {
-      json["warnings"].push_back(each.words);
-    }
-  }
-}
-
 Json ladder_json(const attribution::Selection& selection) {
   Json rounds = Json::array();
   for (const attribution::Round& round : selection.rounds) {

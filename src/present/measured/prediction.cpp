@@ -37,10 +37,18 @@ std::string say(const calibration::OutsideTraining& of) {
 
 }  // namespace
 
-std::vector<std::string> warning_words(const calibration::PredictionAnswer& answer) {
-  std::vector<std::string> all;
+std::vector<Note> prediction_notes(const calibration::PredictionAnswer& answer, std::span<const recording::LogReading> readings) {
+  std::vector<Note> all;
   for (const calibration::PredictionWarning& warning : answer.warnings) {
-    all.push_back(std::visit([](const auto& each) { return say(each); }, warning));
+    all.push_back({Severity::warning, std::visit([](const auto& each) { return say(each); }, warning)});
+  }
+  for (const std::string& each : reading_words(readings)) {
+    all.push_back({Severity::background, each});
+  }
+  for (const std::vector<std::string>& notes : {words_of(answer.admission.notes), words_of(answer.prediction.notes)}) {
+    for (const std::string& each : notes) {
+      all.push_back({Severity::note, each});
+    }
   }
   return all;
 }
@@ -86,16 +94,8 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
   document.paragraphs.emplace_back(
       "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");
   document.tables.push_back(std::move(table));
-  for (const std::string& each : warning_words(answer)) {
-    document.add_note(Severity::warning, each);
-  }
-  for (const std::string& each : reading_words(readings)) {
-    document.add_note(Severity::background, each);
-  }
-  for (const std::vector<std::string>& notes : {words_of(answer.admission.notes), words_of(prediction.notes)}) {
-    for (const std::string& each : notes) {
-      document.add_note(Severity::note, each);
-    }
+  for (const Note& each : prediction_notes(answer, readings)) {
+    document.add_note(each.severity, each.words);
   }
   return document;
 }

@@ -24,8 +24,8 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
 /// Returns the answer in the schema heatsoak.prediction/1.
 Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                      std::span<const recording::LogReading> readings);
-/// Returns the warnings as sentences, in the order of the logs.
-std::vector<std::string> warning_words(const calibration::PredictionAnswer& answer);
+/// Returns the notes: warnings about the model's validity in the order of the logs first.
+std::vector<Note> prediction_notes(const calibration::PredictionAnswer& answer, std::span<const recording::LogReading> readings);
 /// Returns the parameters of the band.
 Json band_json(const motor::ForecastBand& band);
 /// Returns one JSON object per run, with the keys of heatsoak.prediction/1.

@@ -34,16 +34,12 @@ Json band_json(const motor::ForecastBand& band) {
 
 Json prediction_json(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                      std::span<const recording::LogReading> readings) {
-  std::vector<std::string> notes = warning_words(answer);
-  for (const std::vector<std::string>& more :
-       {reading_words(readings), words_of(answer.admission.notes), words_of(answer.prediction.notes)}) {
-    notes.insert(notes.end(), more.begin(), more.end());
-  }
-  return {{"schema", "heatsoak.prediction/1"},
-          {"motor", fitted_motor(motor)},
-          {"model", motor.file.string()},
-          {"runs", runs_json(answer.prediction.runs)},
-          {"notes", notes}};
+  Json json = {{"schema", "heatsoak.prediction/1"},
+               {"motor", fitted_motor(motor)},
+               {"model", motor.file.string()},
+               {"runs", runs_json(answer.prediction.runs)}};
+  add_notes(json, prediction_notes(answer, readings));
+  return json;
 }
 
 }  // namespace heatsoak::present
