@@ -14,13 +14,13 @@ namespace robot_core {
 
 /// Input signals of a thermal law, in the order of the generated code.
 enum GuardSignal : int {
-  guard_current_A,              ///< equivalent DC current, RMS over the guard period; positive: drives
-  guard_speed_rad_per_s,        ///< speed of the motor shaft, signed
-  guard_ambient_C,              ///< temperature of the air around the motor
-  guard_vehicle_speed_m_per_s,  ///< speed of the robot through the air
-  guard_neighbour_C,            ///< temperature of the hottest neighbouring motor
-  guard_age_h,                  ///< operating hours of the motor
-  guard_acceleration_rad_per_s2,
+  guard_current_A,                ///< equivalent DC current, RMS over the guard period; positive: drives
+  guard_speed_rad_per_s,          ///< speed of the motor shaft, signed
+  guard_ambient_C,                ///< temperature of the air around the motor
+  guard_vehicle_speed_m_per_s,    ///< speed of the robot through the air
+  guard_neighbour_C,              ///< temperature of the hottest neighbouring motor
+  guard_age_h,                    ///< operating hours of the motor
+  guard_acceleration_rad_per_s2,  ///< magnitude of dω/dt of the motor shaft, mean over the guard period
   kGuardSignals
 };
 
@@ -76,7 +76,7 @@ inline constexpr float kLongTime_s = 3600.0F;
 /// Result of step_guard(), which writes all members.
 struct GuardOutput {
   float allowed_A;          ///< magnitude of the allowed current until the next call
-  float allowed_braking_A;  ///< the same for a current that brakes; at least allowed_A
+  float allowed_braking_A;  ///< magnitude of the allowed braking current; at least allowed_A
   float winding_C;          ///< observer temperature, above the nominal motor's by the safety factor on heat
   float hottest_body_C;     ///< highest temperature of all nodes but the winding
   bool is_unknown_input;    ///< true if a signal was implausible and its hottest case was used

@@ -10,8 +10,11 @@
 
 namespace heatsoak::attribution {
 
-/// Origin of a signal: every operating point, a temperature, or only the log.
-enum class RegressorKind { operating_point, node_temperature, log_only };
+enum class RegressorKind {
+  operating_point,   ///< quantity of thermal::OperatingPoint
+  node_temperature,  ///< simulated temperature of a node
+  log_only           ///< other column of the log, or time
+};
 
 /// A signal that a curve may depend on.
 struct Regressor {
@@ -34,7 +37,7 @@ struct Regressor {
 /// Name of the signal "time since the start of the recording", in s.
 inline constexpr std::string_view kTimeRegressor = "time";
 
-/// Returns the signals that vary within at least one run and are not copies of each other.
+/// Returns the signals that vary over all runs together (1st to 99th percentile) and are not copies of each other.
 std::vector<Regressor> regressors_of(const estimation::Model& model, const std::vector<estimation::LinearisedRun>& fitted,
                                      const std::vector<estimation::MeasuredRun>& runs);
 

@@ -94,9 +94,8 @@ struct Admission {
 };
 
 /// Checks all logs and throws the problems of all of them, several as base::SeveralFailures:
-/// - RowsGivenTwice if the same rows are fitted twice, or both fitted and held out. Without a fit each log is predicted on its own, so a
-/// log
-///   may be given again;
+/// - RowsGivenTwice if the same rows are fitted twice, or both fitted and held out. Without a fit each log is predicted on its own, so the
+///   same log may be given again;
 /// - NothingAboutHeat with all fitted logs that contain no information about heat;
 /// - Failure (bad_input) with all logs that lack heat input, ambient or motor temperature;
 /// - LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor (only notes if

@@ -37,6 +37,12 @@ struct SensorUnused {
   std::string sensor;
   std::string signal;
 };
+/// Logs lack signals that an effect of the file depends on. Each keeps its default of OperatingPoint, or stays unknown if it is optional.
+struct SignalsMissing {
+  std::vector<thermal::Signal> signals;  ///< at least one
+  std::string effect;
+  std::string recording;  ///< name of the log; empty: no log has them
+};
 /// Value of the motor file that is not fitted, and why.
 using HeldValue = std::variant<ResistanceHeld, NoLoadCurrentUnused, NoLoadCurrentHeld, HeatShareHeld, EffectHeld, SensorHeld, SensorUnused>;
 

@@ -14,6 +14,7 @@
 #include "base/collected_failures.h"
 #include "base/copper.h"
 #include "base/diagnostic.h"
+#include "calibration/effect_signals.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
 #include "calibration/training_range.h"
@@ -32,25 +33,21 @@ namespace {
 /// Largest standard deviation of a logarithm for which the curvature at the optimum describes the likelihood well.
 constexpr double kCurvatureHolds_sd = 0.1;
 
-bool has_speed(const recording::Recording& recording) {
-  const std::vector<thermal::Signal> signals = estimation::signals_of(recording);
-  return std::ranges::find(signals, thermal::Signal::speed) != signals.end();
-}
-
 /// Reads the runs of all recordings. If the heat follows from the current, a log with a speed column needs a speed in every row; a log
 /// without that column is accepted. Throws the failures of all recordings.
-std::vector<estimation::MeasuredRun> runs_of(std::span<const recording::Recording> recordings,
+std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, std::span<const recording::Recording> recordings,
                                              const estimation::MeasuredRunOptions& options, std::vector<estimation::RunNote>& notes) {
   std::vector<estimation::MeasuredRun> all;
   base::CollectedFailures failures;
   for (const recording::Recording& recording : recordings) {
     estimation::MeasuredRunOptions here = options;
     const auto needs = [&](thermal::Signal signal) { return std::ranges::find(here.needed, signal) != here.needed.end(); };
-    if (needs(thermal::Signal::current) && has_speed(recording) && !needs(thermal::Signal::speed)) {
+    if (needs(thermal::Signal::current) && estimation::has_signal(recording, thermal::Signal::speed) && !needs(thermal::Signal::speed)) {
       here.needed.push_back(thermal::Signal::speed);
-    } else if (!has_speed(recording)) {
+    } else if (!estimation::has_signal(recording, thermal::Signal::speed)) {
       std::erase(here.needed, thermal::Signal::speed);
     }
+    need_signals_of_effects(setup.motor, setup.heat, recording, here);
     if (std::optional<estimation::MeasuredRuns> found = failures.attempt([&] { return estimation::measured_runs(recording, here); })) {
       std::ranges::move(found->runs, std::back_inserter(all));
       std::ranges::move(found->notes, std::back_inserter(notes));
@@ -77,10 +74,11 @@ class Calibrating {
     if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(how.columns, recordings_)) {
       all_.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
     }
+    std::ranges::move(effect_signals(needs_of(motor, setup_.heat), recordings_, how.torque).missing, std::back_inserter(all_.findings));
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
     std::vector<estimation::RunNote> notes;
-    all_.runs = runs_of(recordings_, how, notes);
+    all_.runs = runs_of(setup_, recordings_, how, notes);
     std::ranges::move(notes, std::back_inserter(all_.findings));
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), recording::name_and_fingerprint);
     all_.training = motor.fit ? motor.fit->training : motor::TrainingRange{};

@@ -50,10 +50,7 @@ double implicit_power_share(const motor::Motor& motor) {
 }
 
 bool all_have(std::span<const recording::Recording> recordings, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
-  return std::ranges::all_of(recordings, [&](const recording::Recording& each) {
-    const std::vector<thermal::Signal> signals = estimation::signals_of(each, torque);
-    return std::ranges::find(signals, signal) != signals.end();
-  });
+  return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return estimation::has_signal(each, signal, torque); });
 }
 
 class ModelBuilder {
@@ -309,8 +306,9 @@ estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput 
   constexpr double kLongest_s = 2.0;
   estimation::MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  // The input power contains the copper loss; a current from the torque would count it twice.
-  if (heat != HeatInput::input_power) {
+  how.is_heat_input_power = heat == HeatInput::input_power;
+  // A current from the torque would count the copper loss twice.
+  if (!how.is_heat_input_power) {
     how.torque = shaft_torque_of(motor);
   }
   how.least_current_A = least_driving_current_A(motor);
@@ -338,8 +336,7 @@ HeatInput heat_input_for(std::span<const recording::Recording> recordings, const
   }
   std::vector<base::Diagnostic> lacking;
   for (const recording::Recording& each : recordings) {
-    const std::vector<thermal::Signal> signals = estimation::signals_of(each);
-    if (std::ranges::find(signals, thermal::Signal::current) == signals.end()) {
+    if (!estimation::has_signal(each, thermal::Signal::current)) {
       lacking.push_back({{each.file.string()},
                          "current_A",
                          "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "

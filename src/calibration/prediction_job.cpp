@@ -1,5 +1,7 @@
 #include "calibration/prediction_job.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/collected_failures.h"
@@ -47,6 +49,7 @@ PredictionAnswer run_prediction(const PredictionJob& job) {
   if (job.motor.fit) {
     answer.warnings = warnings_of(*job.motor.fit, recordings);
   }
+  std::ranges::copy(answer.prediction.missing, std::back_inserter(answer.warnings));
   return answer;
 }
 

@@ -21,7 +21,7 @@ struct PredictionJob {
 struct FittedRun {
   std::string recording;
 };
-using PredictionWarning = std::variant<OutsideTraining, FittedRun>;
+using PredictionWarning = std::variant<OutsideTraining, FittedRun, SignalsMissing>;
 
 struct PredictionAnswer {
   Prediction prediction;

@@ -1,6 +1,7 @@
 // Thermal observer of the firmware: the motor's network traced into straight-line arithmetic, and its time step.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -21,18 +22,23 @@ namespace heatsoak::derate {
 /// firmware.
 namespace observed {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
-/// Rows of thermal::kQuantities in the order of the enumerators.
-inline constexpr std::array kRows{
-    thermal::quantity_row("current"),
-    thermal::quantity_row("speed"),
-    thermal::quantity_row("ambient"),
-    thermal::quantity_row("vehicle_speed"),
-    thermal::quantity_row("neighbour_temperature"),
-    thermal::quantity_row("age"),
-    thermal::quantity_row("acceleration"),
-};
-inline constexpr std::size_t kSignalCount = kRows.size();
-static_assert(kSignalCount == acceleration + 1 && kSignalCount == thermal::firmware_input_count(), "a row for every input of the firmware");
+inline constexpr std::size_t kSignalCount = acceleration + 1;
+/// Row of thermal::kQuantities for each enumerator.
+inline constexpr std::array kRows = [] {
+  std::array<std::size_t, kSignalCount> rows{};
+  rows.fill(thermal::kQuantityCount);
+  rows[current] = thermal::quantity_row("current");
+  rows[speed] = thermal::quantity_row("speed");
+  rows[ambient] = thermal::quantity_row("ambient");
+  rows[vehicle_speed] = thermal::quantity_row("vehicle_speed");
+  rows[neighbour] = thermal::quantity_row("neighbour_temperature");
+  rows[age] = thermal::quantity_row("age");
+  rows[acceleration] = thermal::quantity_row("acceleration");
+  return rows;
+}();
+static_assert(kSignalCount == thermal::firmware_input_count() &&
+                  std::ranges::all_of(kRows, [](std::size_t row) { return row < thermal::kQuantityCount; }),
+              "a row for every input of the firmware");
 
 struct SignalSpec {
   std::string_view name;     ///< field name in generated code

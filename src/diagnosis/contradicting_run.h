@@ -14,9 +14,9 @@ namespace heatsoak::diagnosis {
 struct ContradictingRun {
   std::string run;           ///< name of the recording
   std::string signal;        ///< sensor with the largest error
-  double by_others_K = 0.0;  ///< RMS error of the run, predicted with the parameters of all other runs
-  double alone_K = 0.0;      ///< the same with parameters fitted to this run alone
-  double usual_K = 0.0;      ///< RMS error of the other runs with the same parameters
+  double by_others_K = 0.0;  ///< RMS error of this recording with parameters fitted to all other recordings
+  double alone_K = 0.0;      ///< RMS error of this recording with parameters fitted to it alone
+  double usual_K = 0.0;      ///< RMS error of the other recordings with the parameters of `by_others_K`
 };
 
 /// Returns the run that contradicts the others most; nothing if none does, or for fewer than three recordings.

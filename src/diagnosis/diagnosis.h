@@ -40,11 +40,11 @@ struct Unexplained {
   double mean_W = 0.0;
   double peak_W = 0.0;
   double rms_W = 0.0;  ///< for a curve: mean magnitude
-  double time_scale_s = 0.0;
-  double gain_nats = 0.0;
-  std::vector<double> knots;
-  std::vector<double> curve;
-  std::vector<double> curve_sd;
+  double time_scale_s = 0.0;     ///< correlation time
+  double gain_nats = 0.0;        ///< evidence gained
+  std::vector<double> knots;     ///< values of the signal, ascending, in `signal_unit`
+  std::vector<double> curve;     ///< per knot, in the unit of the multiplier (attribution::spec_of)
+  std::vector<double> curve_sd;  ///< standard deviation of `curve`
   std::string signal_unit;
   bool is_in_model = false;  ///< the extended model contains the curve
 };
@@ -67,7 +67,7 @@ struct BalanceRow {
 struct Experiment {
   std::string effect;  ///< accepted effect
   std::string rival;   ///< effect to separate it from
-  std::string what;
+  std::string what;    ///< instruction to the user, one sentence
   /// Largest current and speed at which the motor gets no hotter than in the runs; empty: not part of the experiment.
   std::optional<double> most_A = {};
   std::optional<double> most_rad_per_s = {};

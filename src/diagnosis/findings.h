@@ -16,12 +16,6 @@ namespace heatsoak::diagnosis {
 struct ExtensionsMayImitate {
   std::vector<std::string> effects;
 };
-/// No log has these signals, which an effect of the file depends on. Each keeps its default of OperatingPoint, or stays unknown if it is
-/// optional.
-struct SignalsMissing {
-  std::vector<thermal::Signal> signals;  ///< at least one
-  std::string effect;
-};
 /// A conditional effect acts in every run, because its type has no size that could be set to 0.
 struct ConditionNotApplied {
   std::string effect;
@@ -50,9 +44,10 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, SignalsMissing, ConditionNotApplied, ConditionNeverMet,
-                                      IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
-                                      calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+using DiagnosisFinding =
+    std::variant<ExtensionsMayImitate, ContradictingRun, calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet,
+                 IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
+                 calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NoHeatInput : public base::Failure {
@@ -73,8 +68,8 @@ class NoEffectFollows : public base::Failure {
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {
   thermal::Signal signal = thermal::Signal::current;
-  double low = 0.0;  ///< range of the training runs
-  double high = 0.0;
+  double low = 0.0;   ///< 2nd percentile of the training runs, in the unit of the signal
+  double high = 0.0;  ///< 98th percentile
   double time_share = 0.0;  ///< share of the time outside
 };
 

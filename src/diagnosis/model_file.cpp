@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
 #include "calibration/admission.h"
+#include "calibration/effect_signals.h"
 #include "calibration/error_before_after.h"
 #include "calibration/training_range.h"
 #include "calibration/unlogged_speed.h"
@@ -24,48 +24,18 @@ NoHeatInput::NoHeatInput(const std::string& motor) : base::Failure(base::ExitCod
 
 namespace {
 
-bool has_signal(const recording::Recording& recording, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
-  const std::vector<thermal::Signal> signals = estimation::signals_of(recording, torque);
-  return std::ranges::find(signals, signal) != signals.end();
-}
-
-std::vector<thermal::Signal> signals_of(const thermal::EffectInPlace& effect, const estimation::Model& model) {
-  std::vector<double> values;
-  for (const int place : effect.parameter_index) {
-    values.push_back(model.values[static_cast<std::size_t>(place)]);
-  }
-  return effect.type->needed_with(values);
-}
-
-void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
-  std::set<thermal::Signal> wanted;
-  for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
-    const std::vector<thermal::Signal> needed = signals_of(effect, out.model);
-    wanted.insert(needed.begin(), needed.end());
-  }
-  bool has_heat = false;
-  for (const thermal::Signal signal : wanted) {
-    const bool is_anywhere =
-        std::ranges::any_of(recordings, [&](const recording::Recording& each) { return has_signal(each, signal, out.how.torque); });
-    if (is_anywhere) {
-      out.how.needed.push_back(signal);
-      has_heat = has_heat || signal == thermal::Signal::current || signal == thermal::Signal::input_power;
-    }
-  }
+/// Sets the signals that the logs must have, and adds a finding for each effect whose signals no log has.
+void set_needed(ModelOfLogs& out, const motor::Motor& motor, calibration::HeatInput heat,
+                const std::vector<recording::Recording>& recordings) {
+  const std::vector<calibration::EffectNeeds> needs = calibration::needs_of(out.model, heat);
+  calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, out.how.torque);
+  const bool has_heat = std::ranges::any_of(
+      signals.found, [](thermal::Signal each) { return each == thermal::Signal::current || each == thermal::Signal::input_power; });
   if (!has_heat) {
     throw NoHeatInput(motor.id);
   }
-  for (const thermal::EffectInPlace& effect : out.model.network.effects()) {
-    std::vector<thermal::Signal> lacking;
-    for (const thermal::Signal signal : signals_of(effect, out.model)) {
-      if (std::ranges::find(out.how.needed, signal) == out.how.needed.end()) {
-        lacking.push_back(signal);
-      }
-    }
-    if (!lacking.empty()) {
-      out.findings.emplace_back(SignalsMissing{std::move(lacking), effect.name});
-    }
-  }
+  out.how.needed = std::move(signals.found);
+  std::ranges::move(signals.missing, std::back_inserter(out.findings));
 }
 
 /// Switches conditional effects off in runs without their condition. Adds a finding if that is impossible, or if no run has the condition.
@@ -234,7 +204,7 @@ void forget_fit(motor::Motor& motor, const std::vector<recording::Recording>& re
 ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
   ModelOfLogs out;
   const auto have = [&](thermal::Signal signal) {
-    return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return has_signal(each, signal); });
+    return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return estimation::has_signal(each, signal); });
   };
   motor::Motor everywhere = motor;
   for (motor::MotorEffect& effect : everywhere.effects) {
@@ -264,10 +234,10 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(out.how.columns, recordings)) {
     out.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
   }
-  set_needed(out, motor, recordings);
+  set_needed(out, motor, built.heat, recordings);
   const bool has_torque = have(thermal::Signal::shaft_power);
   if (!has_torque && std::ranges::all_of(recordings, [&](const recording::Recording& each) {
-        return has_signal(each, thermal::Signal::shaft_power, out.how.torque);
+        return estimation::has_signal(each, thermal::Signal::shaft_power, out.how.torque);
       })) {
     out.findings.emplace_back(TorqueFromCurrent{});
   }

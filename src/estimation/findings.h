@@ -36,7 +36,7 @@ struct TooFewIntervals {
   std::size_t needed = 0;   ///< number of intervals
   double interval_s = 0.0;  ///< longest interval to which rows are merged
 };
-/// Intervals between unknown values are too short.
+/// Parts between rows with unknown values have too few rows.
 struct IntervalsTooShort {};
 /// Reason why rows are not used.
 using LossOfRows = std::variant<GapsSplitRows, RowsLack, TooFewIntervals, IntervalsTooShort>;

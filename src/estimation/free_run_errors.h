@@ -20,7 +20,7 @@ struct ErrorOfSignal {
 using Errors = std::map<std::string, ErrorOfSignal>;
 
 /// Simulates each run freely from its first measured temperatures and returns the errors by signal. A run that continues one of
-/// `before_them` within `slow_s` starts from the simulated end of that run; later samples are not used.
+/// `before_them` within Thresholds::slow_s starts from the simulated end of that run; later samples are not used.
 Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
 /// Returns the predicted readings of one run in °C, n × sensors.
 Eigen::MatrixXd open_loop_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);

@@ -24,8 +24,8 @@ GapStatisticsTable::GapStatisticsTable(std::span<const double> time_s, std::vect
 
 const GapStatistics& GapStatisticsTable::over(std::size_t rows) {
   const std::size_t known = std::clamp<std::size_t>(rows, 1, kLongest);
-  const auto found = told_.find(known);
-  return found != told_.end() ? found->second : told_.emplace(known, from_windows(known)).first->second;
+  const auto found = by_rows_.find(known);
+  return found != by_rows_.end() ? found->second : by_rows_.emplace(known, from_windows(known)).first->second;
 }
 
 GapStatistics GapStatisticsTable::from_windows(std::size_t rows) const {

@@ -33,7 +33,7 @@ class GapStatisticsTable {
   std::vector<double> sum_;           ///< cumulative sum of the values before each row
   std::vector<std::size_t> unknown_;  ///< number of unknown values before each row
   double usual_s_;
-  std::map<std::size_t, GapStatistics> told_;
+  std::map<std::size_t, GapStatistics> by_rows_;
 };
 
 }  // namespace heatsoak::estimation

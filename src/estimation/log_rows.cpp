@@ -72,7 +72,7 @@ bool has_values(const recording::Channel* channel) {
 }
 
 LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions& options)
-    : current_A_(values("current_A", recording)),
+    : current_A_(options.is_heat_input_power ? nullptr : values("current_A", recording)),
       speed_rad_per_s_(values("speed_rad_per_s", recording)),
       torque_Nm_(values("torque_Nm", recording)),
       bus_V_(values("bus_V", recording)),
@@ -142,6 +142,10 @@ double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, 
 }
 
 double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal) { return at.*thermal::quantity_of(signal).value; }
+
+bool has_signal(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque) {
+  return is_there(recording, signal, torque);
+}
 
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque) {
   std::vector<thermal::Signal> signals;

@@ -22,7 +22,8 @@ bool has_values(const recording::Channel* channel);
 /// Returns the value of a signal in an operating point, in SI units (°C for temperatures, h for age).
 double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal);
 
-/// Operating points of single rows; NaN if a logged quantity has no value there. Recording and options must outlive this object.
+/// Operating points of single rows; NaN if a logged quantity has no value there. The surroundings are coolant_C if the log has it, else
+/// ambient_C, with gaps of less than Thresholds::slow_s interpolated. Recording and options must outlive this object.
 class LogRows {
  public:
   LogRows(const recording::Recording& recording, const MeasuredRunOptions& options);

@@ -68,6 +68,9 @@ class Builder {
   Builder(const recording::Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
     signals_ = signals_of(recording, options.torque);
+    if (options.is_heat_input_power) {
+      std::erase(signals_, thermal::Signal::current);
+    }
     for (const SensorPlace& place : kSensorPlaces) {
       const recording::Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();

@@ -20,12 +20,12 @@ namespace heatsoak::estimation {
 struct Sensor {
   std::string signal;                           ///< key in the recording, for example "winding_C"
   std::string node;                             ///< node of the network
-  double noise_K = 0.0;                         ///< standard deviation of one sample, model-free estimate, quantisation included
+  double noise_K = 0.0;                         ///< standard deviation of one merged sample, at least 0.01 K, model-free estimate, quantisation included
   double step_K = 0.0;                          ///< resolution; 0 if no quantisation is visible
   std::vector<motor::SensorFault> faults = {};  ///< stated faults of this sensor
 };
 
-/// Uncertainty from missing rows while the inputs changed: over `interval` the inputs may have been `other` instead of at[interval], or
+/// Uncertainty from missing rows or blank cells while the inputs changed, and from short pulses between equal ends: over `interval` the inputs may have been `other` instead of at[interval], or
 /// equally far in the other direction.
 struct UnknownInputs {
   Eigen::Index interval = 0;
@@ -73,6 +73,8 @@ struct MeasuredRunOptions {
   double longest_step_s = 2.0;
   /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
   std::vector<thermal::Signal> needed = {};
+  /// The measured input power is the heat. It contains the copper loss, so a logged current would count it twice and is not read.
+  bool is_heat_input_power = false;
   double least_current_A = 0.0;  ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
   ShaftTorque torque = {};       ///< used if the recording has no torque but current and speed
   std::vector<motor::SensorFault> faults = {};  ///< stated faults of the sensors
@@ -90,11 +92,14 @@ std::string recording_of(const MeasuredRun& run);
 
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
+/// Returns whether signals_of() contains a signal.
+bool has_signal(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque = {});
 
 /// Returns the columns that a recording lacks for a comparison with the model: needed signals, the surroundings' temperature, any sensor.
 std::vector<base::Diagnostic> lacking_columns(const recording::Recording& recording, const MeasuredRunOptions& options);
 
-/// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample.
+/// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample,
+/// NaN if the row at the end of the interval has none. Sensors are winding_C and stator_C, without it housing_C.
 /// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval
 /// if no segment with all of them is left.
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options);

@@ -24,7 +24,7 @@ inline constexpr const char* kGeneratedFiles = "generated_files.txt";
 
 struct CoreFolder {
   std::vector<CoreFile> files;         ///< sorted by path
-  std::string hash;                    ///< kInputHash over the texts of both files and the options
+  std::string hash;                    ///< kInputHash over the texts of robot and motor file and the options
   std::uint32_t config_check_sum = 0;  ///< robot_core::config_check_sum()
   double limp_current_A = 0.0;
   double braking_reserve_K = 0.0;
@@ -47,8 +47,8 @@ struct CoreSource {
 /// Guard period of a control period: the whole multiple nearest to 10 ms.
 double guard_period_s(double period_s);
 
-/// Same inputs, same bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for the hash. Throws Failure
-/// (bad_input) as make_core_config() and HostGuard do, or where a file cannot be read.
+/// Returns the folder; equal inputs give equal bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for the hash. Throws Failure
+/// (bad_input) as make_core_config() and HostGuard do, or if a file cannot be read.
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version);
 
@@ -73,7 +73,7 @@ std::string motor_guard_source(const CoreSource& source);
 
 /// Shortest decimal that reads back as the same float, "0.01F". The value must be finite.
 std::string float_literal(float value);
-/// Without line breaks, so that no comment ends early.
+/// Returns the text without line breaks, so that no comment ends early.
 std::string in_one_line(std::string text);
 
 }  // namespace heatsoak::firmware

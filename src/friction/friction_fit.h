@@ -95,7 +95,7 @@ struct HeldOutError {
   int headings = 0;                     ///< number of hold-out headings
   int all_headings = 0;                 ///< number of all headings
   std::optional<double> before_V = {};  ///< RMS over wheels and parts, of the expected voltages
-  std::optional<double> after_V = {};   ///< the same, of the fit
+  std::optional<double> after_V = {};   ///< RMS over wheels and parts, of the fit
   std::vector<std::optional<double>> before_of_wheel_V;
   std::vector<std::optional<double>> after_of_wheel_V;
 };

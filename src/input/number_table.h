@@ -26,7 +26,7 @@ struct BadCell {
   std::string text;        ///< first characters of the cell; empty if it is blank
 };
 
-/// A line that is not a valid row: its number of cells differs from the header's, or the file ends inside it.
+/// A line that is not a valid row, and not among the rows of the block: its number of cells differs from the header's, or the file ends inside it.
 struct BadLine {
   int line = 0;
   std::size_t cells = 0;

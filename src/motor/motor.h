@@ -87,7 +87,7 @@ struct MotorEffect {
 
   /// Returns the values of the parameters in the type's declared order.
   [[nodiscard]] std::vector<double> values() const;
-  /// Returns the index of its column among those of the motor, see kColumns; 0 without a column.
+  /// Returns the index of its column among those of the motor, see kColumnChoices (thermal/effect.h); 0 without a column.
   [[nodiscard]] std::size_t column_place() const;
 };
 

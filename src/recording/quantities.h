@@ -16,7 +16,7 @@ enum class QuantityKind {
   temperature,   ///< temperature of a part of the motor at the row's time
   surroundings,  ///< temperature that the motor does not determine: ambient, coolant, driver, neighbour
   heat_input,    ///< current, speed, torque, voltage, power: value of the interval that begins at the row's time
-  signal         ///< any other signal; may be used as regressor
+  signal         ///< any other signal
 };
 std::string_view to_string(QuantityKind kind);
 
@@ -31,7 +31,7 @@ struct QuantityType {
 };
 std::span<const QuantityType> quantity_types();
 
-/// Keys of heat inputs in descending order of how directly they heat a winding: the first five heat the winding first, the last two imply
+/// Keys of the heat inputs that checks of a log use as a measure of its heat, in descending order of how directly they heat a winding: the first five heat the winding first, the last two imply
 /// no heat by themselves.
 inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
                                                              "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};

@@ -1,4 +1,4 @@
-// Reads a file of measurements in parts of some ten thousand rows.
+// Reads a file of measurements in parts of some 65 000 rows.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace heatsoak::recording {
 
 /// Omits and reports invalid rows and samples (blank, not numbers, repeated or decreasing times, saturated, frozen, outliers of
 /// temperatures); never replaces them by guesses. Memory is bounded. Frozen and saturated samples and the order of rows are judged within
-/// parts of some 65 000 rows, which is all of most logs. Throws Failure: bad_input if the file is not a table, lacks a column or its time
-/// does not increase; cannot_answer if nothing is left. Errors that are visible only at the end of the file are thrown by next().
+/// parts of some 65 000 rows, which is all of most logs. Throws Failure: bad_input if the file is not a table, lacks a column, or if
+/// more than 10 % of the rows go back in time or more than half repeat a time; cannot_answer if nothing is left. Errors that are visible only at the end of the file are thrown by next().
 class RecordingStream {
  public:
   /// `report` must outlive the stream.

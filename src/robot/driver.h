@@ -52,7 +52,7 @@ struct MotorPoint {
   bool limited = false;   ///< true if the bus voltage, the limit of the command or the current limit acts
 };
 
-/// motor_currents() (wheel_laws.h) for a single motor, with its powers.
+/// Returns the operating point of a single motor as motor_currents() (wheel_laws.h) does, with its powers.
 MotorPoint motor_point(const MotorElectrics& motor, const DriverConfig& driver, const MotorCommand& command, double motor_speed_rad_per_s,
                        double winding_C, double magnet_C, double bus_V);
 

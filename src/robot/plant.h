@@ -37,7 +37,7 @@ PlantState plant_at_rest(const PlantConfig& plant);
 struct PlantInput {
   std::array<MotorCommand, kMostWheels> command{};
   Wrench external;                 ///< wrench on the body from outside, local axes
-  double external_height_m = 0.0;  ///< height above the ground where it acts
+  double external_height_m = 0.0;  ///< height above the ground at which it acts
   PerWheel winding_C{25.0, 25.0, 25.0, 25.0};
   PerWheel magnet_C{25.0, 25.0, 25.0, 25.0};
 };

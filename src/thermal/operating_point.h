@@ -1,6 +1,7 @@
 // Operating point of the machine: every quantity that a thermal law may depend on, and the table of these quantities.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -54,7 +55,7 @@ struct OperatingPoint {
 /// about the law. The copper loss is computed from the current; velocity and acceleration need the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
 
-/// Rule for averaging a quantity over time. `rms` averages its square. `limit` marks a quantity that is not averaged.
+/// Rule for averaging a quantity over time. `rms` averages its square. `limit`: not averaged; a merged interval has the default, no limit.
 enum class AveragingRule { mean, rms, limit };
 
 /// Rule for computing the quantity from its log column.
@@ -66,7 +67,7 @@ enum class FromColumn {
 
 /// Assumption of the guard in the firmware about an input whose heating must not be underestimated.
 enum class WorstCase {
-  both_directions,  ///< every magnitude up to the largest, with either sign
+  both_directions,  ///< every magnitude up to the largest, with either sign; current and speed only
   hottest_air,      ///< the hottest declared air
   searched          ///< the values of its range that heat winding and bodies most (derate/hot_cases.cpp)
 };
@@ -76,7 +77,7 @@ enum class WithoutPower {
   zero,           ///< the motor is at rest
   hottest_air,    ///< the hottest declared air
   winding_limit,  ///< the winding limit, for the temperature of another motor
-  any             ///< unknown: each node takes the largest rate over the possible values
+  any             ///< unknown: each node takes the largest rate over the possible values; implemented for the age only
 };
 
 /// Quantity as an input of the guard in the firmware. The constructor makes each row state the value without power.
@@ -95,8 +96,8 @@ struct FirmwareInput {
 template <class S>
 struct OperatingQuantity {
   S OperatingPoint<S>::*value;
-  std::string_view name;  ///< in messages with spaces: "shaft power"
-  std::string_view unit;
+  std::string_view name;             ///< in messages with spaces: "shaft power"
+  std::string_view unit;             ///< UDUNITS text, also the unit of `column`
   std::optional<double> usual = {};  ///< value of a hot motor under load, in SI units (°C, h); none: the default
   AveragingRule averaging = AveragingRule::mean;
   bool is_motion = false;  ///< varies with the motion, independently of the torque
@@ -157,7 +158,7 @@ constexpr std::size_t log_columns_of(std::size_t signal) {
   return count;
 }
 
-/// Number of signals: one more than the last enumerator in the table.
+/// Number of signals: one more than the last enumerator in the table. An enumerator without a row is not counted.
 inline constexpr std::size_t kSignalCount = [] {
   std::size_t count = 0;
   for (const OperatingQuantity<double>& each : kQuantities<double>) {
@@ -184,6 +185,12 @@ constexpr std::size_t firmware_input_count() {
   }
   return count;
 }
+
+static_assert(std::ranges::none_of(kQuantities<double>,
+                                   [](const OperatingQuantity<double>& each) {
+                                     return each.firmware && each.firmware->without_power == WithoutPower::any && each.name != "age";
+                                   }),
+              "only the age is searched over all values: derate/power_off.h, rates_of_any_age() of the drive core");
 
 /// Returns the index of a quantity in the table; kQuantityCount if there is none of that name.
 constexpr std::size_t quantity_row(std::string_view name) {

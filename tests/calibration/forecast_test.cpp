@@ -242,6 +242,66 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   EXPECT_NEAR(run.signals[0].predicted_C.back(), stator_C + kPower_W * sheet.truth.winding_stator_K_per_W, 0.1);
 }
 
+/// Not all logs have a current, so the input power is the heat of all. It contains the copper loss of the logged current.
+TEST(Prediction, ACurrentBesideTheInputPowerIsNotCountedTwice) {
+  const Folder folder;
+  const Sheet sheet;
+  recording::Recording both = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
+  both.channels.push_back({*recording::quantity_named("power_in_W"), std::vector<double>(both.rows(), 4.0)});
+  recording::Recording power_only = both;
+  std::erase_if(power_only.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
+  const std::vector mixed{both, power_only};
+  const ForecastSetup setup = forecast_setup(sheet.motor(folder), mixed);
+  ASSERT_EQ(setup.heat, HeatInput::input_power);
+  const std::vector<estimation::MeasuredRun> runs = runs_of(setup, mixed);
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_FALSE(runs[0].has(thermal::Signal::current));
+  const ForecastModel model = setup.model();
+  const std::vector<double> start_C(static_cast<std::size_t>(model.network().state_count()), 25.0);
+  const Eigen::MatrixXd of_both = model.along(runs[0], model.start(), 0.0, start_C).state_C;
+  const Eigen::MatrixXd of_power = model.along(runs[1], model.start(), 0.0, start_C).state_C;
+  EXPECT_EQ(of_both, of_power);
+}
+
+/// Wind of constant speed cools the stator. A blank cell is a gap between two equal cells, not standstill; a log without the column is
+/// reported.
+TEST(Prediction, BlankCellsOfTheSignalOfAnEffectAreGaps) {
+  const auto known = [](double value) {
+    base::ParameterValue parameter;
+    parameter.value = value;
+    return parameter;
+  };
+  const Folder folder;
+  const Sheet sheet;
+  motor::Motor motor = sheet.motor(folder);
+  motor.effects.push_back({.name = "wind",
+                           .type = thermal::find_effect("vehicle_airflow"),
+                           .nodes = {"stator", "ambient"},
+                           .parameters = {known(0.3), known(0.7)},
+                           .condition = {},
+                           .column = {}});
+  recording::Recording windy = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
+  windy.channels.push_back({*recording::quantity_named("vehicle_speed_m_per_s"), std::vector<double>(windy.rows(), 3.0)});
+  recording::Recording blank = windy;
+  for (std::size_t row = 1; row + 1 < blank.rows(); row += 2) {
+    blank.channels.back().values[row] = std::numeric_limits<double>::quiet_NaN();
+  }
+  recording::Recording without = windy;
+  without.channels.pop_back();
+  const auto predicted = [&](const recording::Recording& log) { return predict(motor, std::vector{log}, PredictionOptions{}); };
+  const Prediction all = predicted(windy);
+  const Prediction half = predicted(blank);
+  const Prediction none = predicted(without);
+  const auto last_C = [](const Prediction& each) { return each.runs.front().signals[1].predicted_C.back(); };
+  EXPECT_GT(last_C(none), last_C(all) + 1.0) << "the wind of this test hardly cools";
+  EXPECT_NEAR(last_C(half), last_C(all), 1e-6);
+  EXPECT_TRUE(all.missing.empty());
+  EXPECT_TRUE(half.missing.empty());
+  ASSERT_EQ(none.missing.size(), 1U);
+  EXPECT_EQ(none.missing.front().effect, "wind");
+  EXPECT_EQ(none.missing.front().recording, without.name);
+}
+
 /// The band of a data sheet covers the tolerances of its parameters. It must grow with them.
 TEST(Prediction, BandWidensWithTheToleranceOfTheFile) {
   const Folder folder;

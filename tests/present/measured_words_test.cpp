@@ -222,7 +222,7 @@ TEST(WordsOfDiagnosis, Findings) {
   const std::vector<std::pair<DiagnosisFinding, Severity>> severities{
       {ExtensionsMayImitate{{"contact_law"}}, Severity::warning},
       {ContradictingRun{}, Severity::warning},
-      {SignalsMissing{}, Severity::note},
+      {calibration::SignalsMissing{}, Severity::note},
       {IntervalsOfDataSheet{}, Severity::note},
       {calibration::RowsTurn{}, Severity::note},
   };
@@ -268,7 +268,7 @@ TEST(Diagnosis, PageAndJsonKeepTheSeverityOfWarnings) {
 TEST(WordsOfDiagnosis, MissingSignalsHaveTheAssumptionOfTheirRow) {
   using thermal::Signal;
   const auto words = [](std::vector<Signal> signals) {
-    return words_of(diagnosis::DiagnosisFinding(diagnosis::SignalsMissing{std::move(signals), "loss"}));
+    return words_of(diagnosis::DiagnosisFinding(calibration::SignalsMissing{std::move(signals), "loss"}));
   };
   EXPECT_EQ(words({Signal::current, Signal::speed}),
             "no log has current_A and speed_rad_per_s, on which loss depends; the value 0 is used");

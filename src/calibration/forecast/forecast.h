@@ -42,7 +42,6 @@ struct Forecast {
   [[nodiscard]] ForecastModel model() const { return setup.model(); }
 };
 
-/// Summarises the prediction of the left-out pieces.
 /// Scores an alternative by the left-out pieces. If they are whole runs, the expected score also includes those of the fit to all runs.
 RivalScore rival_score(ForecastSource source, const PieceScore& left_out, const PieceScore& fitted,
                        std::span<const estimation::MeasuredRun> runs);

@@ -23,10 +23,7 @@ constexpr double kRemainder_sd = 0.1;
 constexpr double kRadiation_W_per_m2_K = 7.432;
 
 bool all_have(std::span<const recording::Recording> recordings, thermal::Signal signal) {
-  return std::ranges::all_of(recordings, [&](const recording::Recording& each) {
-    const std::vector<thermal::Signal> signals = estimation::signals_of(each);
-    return std::ranges::find(signals, signal) != signals.end();
-  });
+  return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return estimation::has_signal(each, signal); });
 }
 
 base::ParameterValue held(double value) {

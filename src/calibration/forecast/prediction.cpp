@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "calibration/effect_signals.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/log_columns.h"
 #include "estimation/turning_rows.h"
@@ -43,11 +44,6 @@ PredictedSignal signal_of(const estimation::MeasuredRun& run, const estimation::
     out.coverage_share = within / static_cast<double>(out.samples);
   }
   return out;
-}
-
-bool has_speed(const recording::Recording& recording) {
-  const std::vector<thermal::Signal> signals = estimation::signals_of(recording);
-  return std::ranges::find(signals, thermal::Signal::speed) != signals.end();
 }
 
 double longest_s(std::span<const estimation::MeasuredRun> runs) {
@@ -99,6 +95,11 @@ void predict_one(const motor::Motor& motor, const recording::Recording& recordin
   std::vector<estimation::RunNote> notes;
   std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, notes);
   std::ranges::move(notes, std::back_inserter(all.notes));
+  const std::vector<EffectNeeds> needs = needs_of(motor, setup.heat);
+  for (SignalsMissing& each : effect_signals(needs, own, how_to_read(motor, setup.heat).torque).missing) {
+    each.recording = recording.name;
+    all.missing.push_back(std::move(each));
+  }
   if (options.turns_within_rows) {
     std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
@@ -138,9 +139,10 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
     estimation::MeasuredRunOptions here = how;
     // If a log has a speed column, only rows with a speed are used.
     std::erase(here.needed, thermal::Signal::speed);
-    if (setup.heat != HeatInput::input_power && has_speed(recording)) {
+    if (setup.heat != HeatInput::input_power && estimation::has_signal(recording, thermal::Signal::speed)) {
       here.needed.push_back(thermal::Signal::speed);
     }
+    need_signals_of_effects(setup.motor, setup.heat, recording, here);
     estimation::MeasuredRuns found = estimation::measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
     std::ranges::move(found.notes, std::back_inserter(notes));

@@ -35,6 +35,7 @@ struct PredictedRun {
 struct Prediction {
   std::vector<PredictedRun> runs;
   std::vector<PredictionNote> notes;
+  std::vector<SignalsMissing> missing;  ///< effects that acted as if their signals had the default
 };
 
 /// Predicts a run from its first temperatures and measured inputs. `covariance` is that of θ.
@@ -51,7 +52,8 @@ struct PredictionOptions {
   bool turns_within_rows = false;        ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
 };
 
-/// Predicts each recording separately with the heat input that it has: power balance, current, torque or input power. Without a fit in the
+/// Predicts each recording separately with the heat input that it has: power balance, else current, else input power, else a
+/// current from the torque. Without a fit in the
 /// motor file, the parameters have their prior uncertainty. Throws Failure: bad_input if a log has no heat input or no temperature,
 /// numerics_failed if the temperatures diverge.
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options);

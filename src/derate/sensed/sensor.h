@@ -101,7 +101,7 @@ struct SensorPlan {
   int dropped = 0;                      ///< drawn motors of that check whose correct sensor is rejected by the cross-check
   int sensor_fault_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
   double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault, from the hottest air temperature
-  double sensor_fault_warm_C = 0.0;     ///< the same from any start up to the winding limit, all nodes equally warm
+  double sensor_fault_warm_C = 0.0;     ///< hottest winding with that fault, from any start up to the winding limit with all nodes equally warm
 };
 
 }  // namespace heatsoak::derate

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/quantity.h"
+#include "estimation/log_rows.h"
 #include "estimation/turning_rows.h"
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
@@ -181,6 +182,26 @@ std::string say(const calibration::HeatShareHeld& of) {
 std::string say(const calibration::EffectHeld& of) {
   return fmt::format("effects.{}: {} {} held: the file states no tolerance or range", of.effect, fmt::join(of.parameters, ", "),
                      of.parameters.size() == 1 ? "is" : "are");
+}
+
+/// Returns what a law assumes about a signal that no log has, by its row of the table of quantities.
+std::string assumption_in_words(thermal::Signal signal) {
+  const thermal::OperatingQuantity<double>& row = thermal::quantity_of(signal);
+  return row.is_optional ? fmt::format("the {} is treated as unknown", row.lacking)
+                         : fmt::format("the value {} is used", thermal::OperatingPoint<double>{}.*row.value);
+}
+
+std::string say(const calibration::SignalsMissing& of) {
+  std::vector<std::string_view> columns;
+  std::vector<std::string> assumptions;
+  for (const thermal::Signal signal : of.signals) {
+    columns.push_back(estimation::column_of(signal));
+    if (std::string assumption = assumption_in_words(signal); std::ranges::find(assumptions, assumption) == assumptions.end()) {
+      assumptions.push_back(std::move(assumption));
+    }
+  }
+  const std::string who = of.recording.empty() ? "no log has" : of.recording + " does not have";
+  return fmt::format("{} {}, on which {} depends; {}", who, fmt::join(columns, " and "), of.effect, fmt::join(assumptions, " and "));
 }
 
 std::string say(const calibration::SensorHeld& of) {
@@ -377,7 +398,7 @@ Severity severity_of(const calibration::CalibrationFinding& finding) {
   using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit>;
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
-                      ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, estimation::RunNote>;
+                      ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;
   using Background = Kinds<CrossValidation>;
   return severity_in<Warnings, Notes, Background>(finding);
 }

@@ -32,25 +32,6 @@ std::string say(const diagnosis::ContradictingRun& run) {
       base::significant(run.alone_K, 2));
 }
 
-/// Returns what a law assumes about a signal that no log has, by its row of the table of quantities.
-std::string assumption_in_words(thermal::Signal signal) {
-  const thermal::OperatingQuantity<double>& row = thermal::quantity_of(signal);
-  return row.is_optional ? fmt::format("the {} is treated as unknown", row.lacking)
-                         : fmt::format("the value {} is used", thermal::OperatingPoint<double>{}.*row.value);
-}
-
-std::string say(const diagnosis::SignalsMissing& of) {
-  std::vector<std::string_view> columns;
-  std::vector<std::string> assumptions;
-  for (const thermal::Signal signal : of.signals) {
-    columns.push_back(estimation::column_of(signal));
-    if (std::string assumption = assumption_in_words(signal); std::ranges::find(assumptions, assumption) == assumptions.end()) {
-      assumptions.push_back(std::move(assumption));
-    }
-  }
-  return fmt::format("no log has {}, on which {} depends; {}", fmt::join(columns, " and "), of.effect, fmt::join(assumptions, " and "));
-}
-
 std::string say(const diagnosis::ConditionNotApplied& of) {
   return fmt::format(
       "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
@@ -104,8 +85,9 @@ std::string words_of(const diagnosis::DiagnosisFinding& finding) {
 Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   using namespace diagnosis;
   using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange>;
-  using Notes = Kinds<SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
-                      TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+  using Notes =
+      Kinds<calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
+            TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
   return severity_in<Warnings, Notes, Kinds<>>(finding);
 }
 

@@ -31,6 +31,8 @@ std::string say(const calibration::FittedRun& of) {
   return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", of.recording);
 }
 
+std::string say(const calibration::SignalsMissing& of) { return words_of(calibration::CalibrationFinding(of)); }
+
 std::string say(const calibration::OutsideTraining& of) {
   return std::visit([](const auto& each) { return say(each); }, of);
 }
