@@ -122,14 +122,14 @@ void require_samples(const GuaranteeOptions& options) {
   if (const long least = least_samples(options); options.samples < least) {
     throw base::Failure(base::ExitCode::bad_input,
                         fmt::format("{} samples cannot show a confidence of {:.4g} with {:.0f} % certainty: expected --samples {} or more",
-                                    options.samples, options.confidence, 100.0 * kCertainty_share, least));
+                                    options.samples, options.required_share, 100.0 * kCertainty_share, least));
   }
 }
 
 /// Returns the largest number of drawn motors over a limit with which the lower bound on all motors reaches the confidence.
 int most_over(const GuaranteeOptions& goal) {
   int most = -1;
-  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.confidence) {
+  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.required_share) {
     ++most;
   }
   return most;
@@ -165,7 +165,7 @@ class Search {
     constexpr double kGrowth = 1.5;
     const GuaranteeOptions& goal = options_.guarantee;
     MotorVerdicts motors(motor_, reachable_.limits, goal, 0, simulated());
-    return smallest(1.0, kGrowth, motors, static_cast<int>((1.0 - goal.confidence) * goal.samples));
+    return smallest(1.0, kGrowth, motors, static_cast<int>((1.0 - goal.required_share) * goal.samples));
   }
 
   struct Promise {
@@ -191,7 +191,7 @@ class Search {
       const std::size_t per_block = base::kLanes * uses.size();
       const Guarantee guarantee =
           check(motor_, reachable_.limits, uses, goal, kStreamsApart, [&](std::size_t, std::size_t) { work_.add(per_block); });
-      if (guarantee.least_kept_share >= goal.confidence) {
+      if (guarantee.least_kept_share >= goal.required_share) {
         return {std::move(last.observer), last.rules, std::move(last.table), std::move(uses), guarantee};
       }
       // The full check may find another motor over its limit, by the rounding of MotorVerdicts.
@@ -205,7 +205,7 @@ class Search {
         base::ExitCode::limit_exceeded,
         fmt::format("{}: fewer than {:.0f} % of the motors with the declared tolerances stay below {:.0f} °C in air of {:.0f} °C, however "
                     "little current is allowed; use a lower --confidence or --ambient, or {}",
-                    motor_.id, 100.0 * options_.guarantee.confidence, reachable_.limits.winding_C, reachable_.hottest_ambient_C,
+                    motor_.id, 100.0 * options_.guarantee.required_share, reachable_.limits.winding_C, reachable_.hottest_ambient_C,
                     motor_.fit ? "calibrate the motor with more or longer runs, which narrow its intervals" : "calibrate the motor")};
   }
 
@@ -321,7 +321,7 @@ class Search {
 
 }  // namespace
 
-long least_samples(const GuaranteeOptions& options) { return base::fewest_draws(1.0 - options.confidence, kCertainty_share); }
+long least_samples(const GuaranteeOptions& options) { return base::fewest_draws(1.0 - options.required_share, kCertainty_share); }
 
 double limp_current_A(const Derating& derating) {
   double least_A = std::numeric_limits<double>::infinity();

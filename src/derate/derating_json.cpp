@@ -103,7 +103,7 @@ Json table_json(const CurrentTable& table) {
 }
 
 Json guarantee_json(const Derating& derating, const Guarantee& checked) {
-  return {{"confidence", derating.options.guarantee.confidence},
+  return {{"confidence", derating.options.guarantee.required_share},
           {"certainty", kCertainty_share},
           {"least_kept_share", std::floor(1e4 * checked.least_kept_share) / 1e4},
           {"samples", checked.samples},

@@ -36,7 +36,7 @@ std::string confidence_text(const Derating& derating, const Guarantee& checked) 
   return fmt::format(
       "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
       "hardest uses; {} of {} drawn motors exceeded one.",
-      derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
+      derating.options.guarantee.required_share, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
       derating.uses.size(), checked.over, checked.samples);
 }
 
@@ -112,11 +112,16 @@ std::string own_effects_text(const Derating& derating) {
 void require_finite(const Derating& derating) {
   const CurrentTable& table = derating.table;
   const auto is_finite = [](double value) { return std::isfinite(value); };
-  const double numbers[] = {derating.rules.limits.winding_C,       derating.rules.limits.stator_C.value_or(0.0),
-                            derating.rules.most_current_A,         derating.rules.most_speed_rad_per_s,
-                            derating.torque_constant_Nm_per_A,     derating.observer.heat_safety_factor(),
-                            derating.options.hottest_ambient_C,    derating.options.coldest_ambient_C,
-                            derating.options.guarantee.confidence, derating.options.period_s};
+  const double numbers[] = {derating.rules.limits.winding_C,
+                            derating.rules.limits.stator_C.value_or(0.0),
+                            derating.rules.most_current_A,
+                            derating.rules.most_speed_rad_per_s,
+                            derating.torque_constant_Nm_per_A,
+                            derating.observer.heat_safety_factor(),
+                            derating.options.hottest_ambient_C,
+                            derating.options.coldest_ambient_C,
+                            derating.options.guarantee.required_share,
+                            derating.options.period_s};
   if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.square_A2, is_finite) ||
       !std::ranges::all_of(table.speed_rad_per_s, is_finite) || !std::ranges::all_of(table.stator_C, is_finite) ||
       !std::ranges::all_of(table.winding_C, is_finite)) {

@@ -15,7 +15,7 @@ std::vector<OptionQuantity> option_quantities(DerateOptions& options) {
        &options.approach_s},
       {{"confidence", "", base::Range::between(0.5, 0.999),
         "least share of motors that keep their limits, shown with 95 % certainty; 0.95 unless given"},
-       &options.guarantee.confidence},
+       &options.guarantee.required_share},
       {{"error", "", base::Range::between(0.002, 0.5),
         "largest loss of current in the table against the exact result of its safety factor; a coarse table loses current between its "
         "points, which can lower the safety factor; 1 % unless given"},

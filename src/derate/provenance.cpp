@@ -22,7 +22,7 @@ std::string options_text(const DerateOptions& options, double approach_s) {
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --error {:.9g} --size {} --confidence {:.9g} "
       "--samples {} --seed {}",
       options.period_s, options.hottest_ambient_C, options.coldest_ambient_C, options.approach_s.value_or(approach_s),
-      options.table.shortfall_ratio, options.table.most_bytes, options.guarantee.confidence, options.guarantee.samples,
+      options.table.shortfall_ratio, options.table.most_bytes, options.guarantee.required_share, options.guarantee.samples,
       options.guarantee.seed);
   if (options.sensor) {
     const SensorOptions& sensor = *options.sensor;

@@ -117,7 +117,7 @@ std::string options_text(const motor::Motor& motor, const CoreOptions& options, 
   const derate::DerateOptions& derate = derating.options;
   std::string text = fmt::format(
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
-      options.period_s, derate.hottest_ambient_C, derate.coldest_ambient_C, derating.rules.approach_s, derate.guarantee.confidence,
+      options.period_s, derate.hottest_ambient_C, derate.coldest_ambient_C, derating.rules.approach_s, derate.guarantee.required_share,
       derate.guarantee.samples, derate.guarantee.seed);
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);

@@ -33,7 +33,7 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
             {"winding_limit_C", derating.rules.limits.winding_C},
             {"hottest_ambient_C", derating.rules.hottest_ambient_C},
             {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
-            {"confidence", derating.options.guarantee.confidence},
+            {"confidence", derating.options.guarantee.required_share},
             {"samples", checked.samples},
             {"over", checked.over},
             {"limp_current_A", rounded(folder.limp_current_A, 4)},

@@ -160,7 +160,7 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
                                 derate::limp_current_A(derating))}},
       .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} drawn motors exceeded a limit in the {} hardest uses. This "
                                  "confidence needs at least {} draws.",
-                                 derating.options.guarantee.confidence, checked.over, checked.samples, derating.uses.size(),
+                                 derating.options.guarantee.required_share, checked.over, checked.samples, derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
                                  "(the hottest).",

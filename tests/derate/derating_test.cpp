@@ -150,9 +150,9 @@ TEST(Derate, NominalParametersAloneAreNotEnough) {
 
 TEST(Derate, MoreConfidenceAllowsLess) {
   DerateOptions careful;
-  careful.guarantee.confidence = 0.99;
+  careful.guarantee.required_share = 0.99;
   DerateOptions bold;
-  bold.guarantee.confidence = 0.7;
+  bold.guarantee.required_share = 0.7;
   const double more_A = derate(ecx_32(), twente(), bold).table.allowed_A(0.0, 60.0, 140.0);
   const double usual_A = derate(ecx_32(), twente(), {}).table.allowed_A(0.0, 60.0, 140.0);
   const double less_A = derate(ecx_32(), twente(), careful).table.allowed_A(0.0, 60.0, 140.0);

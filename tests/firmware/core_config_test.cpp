@@ -167,7 +167,7 @@ TEST(CoreConfig, RefusesAPeriodThatItsWheelLoopCannotUse) {
 const derate::Derating& derating() {
   static const derate::Derating made = [] {
     derate::DerateOptions options;
-    options.guarantee.confidence = 0.9;
+    options.guarantee.required_share = 0.9;
     options.guarantee.samples = 32;
     return derate::derate(ecx_32(), twente(), options);
   }();

@@ -67,7 +67,7 @@ std::string guarantee_text(const Derating& derating) {
           : "",
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
-      derating.options.guarantee.confidence, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
+      derating.options.guarantee.required_share, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
       derating.uses.size(), checked.samples, checked.over, checked.winding_most_C,
       derating.sensor ? fmt::format(" * All this is without the temperature sensor; with it the safety factor on heat is {:.3g}, see "
                                     "SENSOR_MOST_GAIN_A below.\n",

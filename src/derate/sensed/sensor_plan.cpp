@@ -117,7 +117,7 @@ class PlanSearch {
     begin(SearchWork::sensor_search);
     return smallest(1.0, kGrowth, [&](double tried) {
       const Guarantee found = guarantee_of(peaks(plan_with(tried), coarse_s, 0));
-      return found.over <= (1.0 - model_only_.options.guarantee.confidence) * found.samples;
+      return found.over <= (1.0 - model_only_.options.guarantee.required_share) * found.samples;
     });
   }
 
@@ -136,7 +136,7 @@ class PlanSearch {
       SensorPlan plan = plan_with(tried);
       std::vector<SensedPeak> fresh = peaks(plan, fine_s(), kStreamsApart);
       plan.guarantee = guarantee_of(fresh);
-      const bool holds = plan.guarantee.least_kept_share >= model_only_.options.guarantee.confidence;
+      const bool holds = plan.guarantee.least_kept_share >= model_only_.options.guarantee.required_share;
       if (holds) {
         made.emplace(Promise{std::move(plan), std::move(fresh)});
       }

@@ -398,7 +398,7 @@ void write(const std::filesystem::path& folder, const Subject& subject, std::spa
   base::write_file(
       folder / "worst_use.md",
       fmt::format("Safety factor on heat {:.2f}, confidence {:.2f}, limit {:.0f} °C. Run time {:.0f} min, one thread.\n\n{}\n{}",
-                  subject.derating.observer.heat_safety_factor(), subject.options.guarantee.confidence,
+                  subject.derating.observer.heat_safety_factor(), subject.options.guarantee.required_share,
                   subject.derating.rules.limits.winding_C, elapsed_min, table_text(tallies), promise));
   base::write_file(folder / "worst_use.csv", csv_text(tallies));
   base::write_file(folder / "worst_use.svg", report::draw_svg(chart_of(tallies, subject.derating.rules.limits.winding_C)));
