@@ -296,7 +296,7 @@ class Search {
   /// Returns the smallest safety factor, at least `from`, at which at most `most_over` motors exceed a limit. Throws too_hot() if there is
   /// none.
   [[nodiscard]] double smallest(double from, double growth, MotorVerdicts& motors, int most_over) {
-    const auto is_enough = [&](double tried) {
+    const auto check = [&](double tried) -> TriedFactor {
       // The search has played the uses of its result already.
       Attempt with = last_ && last_->safety_factor == tried ? std::move(*last_) : attempt(tried);
       const auto played = [&](std::size_t index) -> const UsePlayed& { return use(with, index); };
@@ -304,9 +304,9 @@ class Search {
       if (over <= most_over) {
         last_.emplace(std::move(with));
       }
-      return over <= most_over;
+      return {over <= most_over, motors.expected_ratio(most_over)};
     };
-    const std::optional<double> found = smallest_factor(from, kLargestReserve, growth, is_enough);
+    const std::optional<double> found = smallest_factor({from, kLargestReserve, growth}, check);
     return found ? *found : throw too_hot();
   }
 

@@ -58,10 +58,16 @@ std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> moto
     }
     for (int lane = 0; lane < base::kLanes; ++lane) {
       MotorPeak& peak = result[static_cast<std::size_t>(lane)];
+      const auto take = [&](double peak_C, double limit_C) {
+        peak.limit_use_ratio = std::max(peak.limit_use_ratio, (peak_C - ambient_C) / (limit_C - ambient_C));
+        peak.is_over = peak.is_over || peak_C > limit_C;
+      };
       const double winding_C = run.peak_C()[motor::states::winding][lane];
       peak.winding_C = std::max(peak.winding_C, winding_C);
-      peak.is_over =
-          peak.is_over || winding_C > limits.winding_C || (limits.stator_C && run.peak_C()[motor::states::stator][lane] > *limits.stator_C);
+      take(winding_C, limits.winding_C);
+      if (limits.stator_C) {
+        take(run.peak_C()[motor::states::stator][lane], *limits.stator_C);
+      }
     }
   }
   return result;

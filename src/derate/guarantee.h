@@ -74,7 +74,8 @@ std::vector<UsePlayed> play(const Observer& observer, const CurrentTable& table,
 /// Peak temperature of one motor over all uses.
 struct MotorPeak {
   double winding_C = 0.0;
-  bool is_over = false;  ///< winding or stator exceeded its limit
+  double limit_use_ratio = 0.0;  ///< rise of winding or stator above the air, relative to the permitted rise; the larger of both
+  bool is_over = false;          ///< winding or stator exceeded its limit
 };
 /// Simulates kLanes motors, whose networks have the same structure, through every use.
 std::array<MotorPeak, base::kLanes> peaks(std::span<const thermal::Network> motors, const TemperatureLimits& limits,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -12,16 +13,20 @@ MotorVerdicts::MotorVerdicts(const motor::Motor& motor, const TemperatureLimits&
     : limits_(limits),
       threads_(options.threads),
       simulated_(std::move(simulated)),
-      over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0) {
+      over_up_to_ratio_(static_cast<std::size_t>(options.samples), 0.0),
+      limit_use_ratio_(over_up_to_ratio_.size(), 0.0) {
   for (std::size_t begin = 0; begin < over_up_to_ratio_.size(); begin += base::kLanes) {
     std::ranges::move(drawn_networks(motor, options.seed, first_stream + begin), std::back_inserter(motors_));
   }
 }
 
 int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play) {
+  last_ratio_ = safety_factor;
   std::vector<std::size_t> undecided;
   for (std::size_t motor = 0; motor < over_up_to_ratio_.size(); ++motor) {
-    if (safety_factor > over_up_to_ratio_[motor]) {
+    const bool is_over = safety_factor <= over_up_to_ratio_[motor];
+    limit_use_ratio_[motor] = is_over ? std::numeric_limits<double>::infinity() : 0.0;
+    if (!is_over) {
       undecided.push_back(motor);
     }
   }
@@ -39,6 +44,13 @@ int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern>
     }
   }
   return static_cast<int>(std::ranges::count_if(over_up_to_ratio_, [&](double factor) { return safety_factor <= factor; }));
+}
+
+double MotorVerdicts::expected_ratio(int most_over) const {
+  std::vector<double> descending = limit_use_ratio_;
+  std::ranges::sort(descending, std::greater<>());
+  const double use_ratio = most_over < 0 ? 0.0 : descending[std::min(static_cast<std::size_t>(most_over), descending.size() - 1)];
+  return use_ratio > 0.0 && std::isfinite(use_ratio) ? last_ratio_ * use_ratio : std::numeric_limits<double>::quiet_NaN();
 }
 
 MotorVerdicts::Known& MotorVerdicts::known(const LoadPattern& pattern) {
@@ -66,7 +78,9 @@ void MotorVerdicts::simulate(const UsePlayed& use, double safety_factor, Known& 
   });
   for (std::size_t i = 0; i < motors.size(); ++i) {
     const std::size_t motor = motors[i];
-    if (found[i / base::kLanes][i % base::kLanes].is_over) {
+    const MotorPeak& peak = found[i / base::kLanes][i % base::kLanes];
+    limit_use_ratio_[motor] = std::max(limit_use_ratio_[motor], peak.limit_use_ratio);
+    if (peak.is_over) {
       over_up_to_ratio_[motor] = safety_factor;
       ++known.over;
     } else {

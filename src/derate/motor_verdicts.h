@@ -28,6 +28,10 @@ class MotorVerdicts {
   /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.
   int count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play);
 
+  /// Returns an estimate of the smallest safety factor at which at most `most_over` motors exceed a limit; NaN if unknown. A motor's rise
+  /// is about inversely proportional to the factor, so the estimate is close if that of the last count was.
+  [[nodiscard]] double expected_ratio(int most_over) const;
+
  private:
   /// Results of one load pattern.
   struct Known {
@@ -43,6 +47,9 @@ class MotorVerdicts {
   Simulated simulated_;
   std::vector<thermal::Network> motors_;
   std::vector<double> over_up_to_ratio_;  ///< per motor: largest safety factor at which it exceeded a limit; 0: unknown
+  double last_ratio_ = 1.0;               ///< safety factor of the last count
+  /// Per motor at that factor: MotorPeak::limit_use_ratio of the simulated uses; 0 if none; infinite if it exceeds a limit by inference.
+  std::vector<double> limit_use_ratio_;
   std::vector<Known> known_;
 };
 

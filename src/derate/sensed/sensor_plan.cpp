@@ -164,7 +164,8 @@ class PlanSearch {
 
   template <class IsEnough>
   [[nodiscard]] std::optional<double> smallest(double from, double growth, const IsEnough& is_enough) {
-    return smallest_factor(from, model_only_.observer.heat_safety_factor(), growth, is_enough);
+    const auto check = [&](double tried) { return TriedFactor{.is_enough = is_enough(tried)}; };
+    return smallest_factor({from, model_only_.observer.heat_safety_factor(), growth}, check);
   }
 
   const motor::Motor& motor_;
