@@ -62,6 +62,11 @@ base::Progress Computations::reporting(const Check& check, double all_s) const {
   };
 }
 
+bool needs_drive(const ThresholdType& type) {
+  const auto has = [](const std::vector<Setting>& all, Setting one) { return std::ranges::find(all, one) != all.end(); };
+  return has(type.needs, Setting::duty) && has(type.takes, Setting::derate);
+}
+
 double Computations::usual_s(const Check& check) {
   constexpr double kOther_s = 0.1;
   constexpr double kLog_s = 0.5;
@@ -71,10 +76,7 @@ double Computations::usual_s(const Check& check) {
   }
   if (needs(check, Setting::derate)) {
     all_s += derating_s(check);
-    const bool is_driven = std::ranges::any_of(check.limits, [](const Limit& limit) {
-      const auto has = [](const std::vector<Setting>& all, Setting one) { return std::ranges::find(all, one) != all.end(); };
-      return has(limit.type->needs, Setting::duty) && has(limit.type->takes, Setting::derate);
-    });
+    const bool is_driven = std::ranges::any_of(check.limits, [](const Limit& limit) { return needs_drive(*limit.type); });
     all_s += is_driven ? simulate::kDrive_s + simulate::kPlayedGame_s : 0.0;
   }
   return all_s;
@@ -85,13 +87,22 @@ int Computations::independent_draws(const Check& check) {
   return games > 0 ? games : check.samples;
 }
 
-const duty::MatchLoad& Computations::nominal_game(const Check& check) {
-  const std::shared_ptr<const duty::MatchDuty> match = match_of(check);
+namespace {
+
+std::shared_ptr<const duty::MatchDuty> required_match(const Check& check) {
+  std::shared_ptr<const duty::MatchDuty> match = match_of(check);
   if (!match) {
     throw base::Failure(base::ExitCode::bad_input,
                         fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match", check.duty->id,
                                     check.duty->shape));
   }
+  return match;
+}
+
+}  // namespace
+
+const duty::MatchLoad& Computations::nominal_game(const Check& check) {
+  const std::shared_ptr<const duty::MatchDuty> match = required_match(check);
   return nominal_games_.get(key_of_load(check), [&] { return duty::play_nominal(match->inputs(), *check.robot, check.seed); });
 }
 
@@ -162,7 +173,7 @@ const derate::Derating& Computations::derating(const Check& check, const derate:
 }
 
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
-  const duty::MatchLoad& load = nominal_game(check);
+  const std::shared_ptr<const duty::MatchDuty> match = required_match(check);
   if (!check.motor->nominal.rotor_inertia_kg_m2) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("{} has no rotor_inertia, which is needed for the acceleration of a wheel",
                                                                check.motor->file.string()));
@@ -175,8 +186,9 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     simulate::MotorGuard guard;
     guard.derating.emplace(derating(check, options));
     guard.guard.emplace(*guard.derating);
+    const duty::MatchLoad& load = nominal_game(check);  // after the derating, because the drawn games beside it come with this game
     const simulate::GuardedCore core(*check.robot, *check.motor, simulate::GuardUse::shadow, guard);
-    const simulate::Game game = simulate::game_of(match_of(check)->inputs(), load);
+    const simulate::Game game = simulate::game_of(match->inputs(), load);
     simulate::MatchRunOptions run;
     run.ambient_C = check.duty->ambient_C.value;
     run.drive = simulate::real_drive(*check.robot, check.seed);

@@ -65,6 +65,9 @@ struct GuardedDrive {
   double duration_s = 0.0;
 };
 
+/// Returns whether the threshold needs Computations::guarded_drive().
+bool needs_drive(const ThresholdType& type);
+
 /// Thread-safe. The check must have the settings that a function reads (ThresholdType::needs). Functions throw Failure with the reason if
 /// there is no result.
 class Computations {

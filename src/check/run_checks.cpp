@@ -49,6 +49,21 @@ bool needs_samples(const Check& check) {
          });
 }
 
+/// Drives the match of a check if one of its limits needs that. A failure is kept for the limit.
+void drive_ahead(const Check& check, Computations& computations) {
+  const auto driven = std::ranges::find_if(check.limits, [](const Limit& limit) { return needs_drive(*limit.type); });
+  if (driven == check.limits.end()) {
+    return;
+  }
+  try {
+    require_readable(check, *driven->type);
+    robot::require_sound(*check.robot);
+    static_cast<void>(computations.guarded_drive(check));
+  } catch (const base::Failure&) {
+    return;  // kept, or thrown again
+  }
+}
+
 Measured measure(const Check& check, Limit& limit, Computations& computations, const CommandAnswers& answers) {
   if (!check.command.empty()) {
     return measure_number(limit, answers.of(check));
@@ -163,11 +178,18 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Comman
   }
   CheckedWork work(file);
   Computations computations(threads, [&work](const Check& check, double work_s) { work.add(check, work_s); });
-  for (const Check& check : file.checks) {
-    if (needs_samples(check)) {
-      computations.play_games(check, progress.begin(kPlaying));
+  // A driven match cannot be divided among threads, so it begins at once, beside the games that many thresholds wait for.
+  base::in_parallel(file.checks.size() + 1, threads, [&](std::size_t job) {
+    if (job < file.checks.size()) {
+      drive_ahead(file.checks[job], computations);
+      return;
     }
-  }
+    for (const Check& check : file.checks) {
+      if (needs_samples(check)) {
+        computations.play_games(check, progress.begin(kPlaying));
+      }
+    }
+  });
   work.begin(progress.begin(kChecking));
   // Thresholds of one check mostly need the same results, so each check is one job.
   base::in_parallel(ranges.size(), threads, [&](std::size_t job) {
