@@ -155,7 +155,7 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
                          : fmt::format("'{}' is no number; expected one of its members: {}", name, names_text(children_of(value))));
   }
   if (value.is_null() && std::ranges::find(kNullIsNever, trail.keys.back()) != kNullIsNever.end()) {
-    return {name, std::numeric_limits<double>::infinity(), unit_at(trail), {}};
+    return {.name = name, .value = std::numeric_limits<double>::infinity(), .unit = unit_at(trail)};
   }
   if (value.is_null()) {
     refuse(fmt::format("'{}' is null: the answer has no value there; expected a number that it has", name));
@@ -163,7 +163,7 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
   if (!value.is_number()) {
     refuse(fmt::format("'{}' is {}; expected a number", name, value.dump(-1, ' ', false, Json::error_handler_t::replace)));
   }
-  return {name, value.get<double>(), unit_at(trail), interval_of(*trail.groups.back(), trail.keys.back())};
+  return {name, value.get<double>(), unit_at(trail), value.is_number_integer(), interval_of(*trail.groups.back(), trail.keys.back())};
 }
 
 class Search {

@@ -134,10 +134,10 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
   if (type.room == Room::none) {
     return text_of(in_unit(measured.value, type.unit, unit));
   }
-  // A value at its origin would get no room, so its distance counts as at least the least size.
+  // A value at its origin would get no room. A number of an answer without an interval gets none: it is a limit of exactly zero.
   constexpr double kLeastRise_K = 20.0;
-  const double least_size = type.unit == "degC" ? std::max(kLeastRise_K, type.least_size_ratio) : type.least_size_ratio;
-  const double room = margin_share * std::max(std::abs(measured.value - measured.origin_value), least_size);
+  const double room = margin_share * std::max({std::abs(measured.value - measured.origin_value), type.least_distance_value,
+                                               measured.interval_width_value, type.unit == "degC" ? kLeastRise_K : 0.0});
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -19,15 +18,6 @@
 namespace heatsoak::check {
 namespace {
 
-/// Values of this size get a sensible room from --update where the value itself is about zero.
-double least_size(std::string_view unit, bool is_share) {
-  constexpr std::array<std::pair<std::string_view, double>, 6> kSizes{
-      {{"K", 20.0}, {"A", 0.2}, {"V", 0.2}, {"W", 0.2}, {"s", 0.2}, {"m", 0.02}}};
-  const auto* const found = std::ranges::find(kSizes, unit, &std::pair<std::string_view, double>::first);
-  constexpr double kShare = 0.01;
-  return found != kSizes.end() ? found->second : is_share ? kShare : 0.0;
-}
-
 /// A percentage is a pure number that is shown in percent.
 void set_type(Limit& limit, std::string name, std::string unit, Bound direction, bool is_share) {
   const auto own = std::make_shared<NumberType>();
@@ -39,7 +29,6 @@ void set_type(Limit& limit, std::string name, std::string unit, Bound direction,
   own->type.is_share = is_share;
   own->type.direction = direction;
   own->type.example = own->example;
-  own->type.least_size_ratio = least_size(own->unit, is_share);
   if (own->unit == "degC") {
     own->type.range = thresholds::kPlausible_C;  // 70 K of a rise would be -203 degC
   }
@@ -71,6 +60,25 @@ std::string interval_text(const AnswerNumber& number, const ThresholdType& type)
     return "the time of the nominal motor is compared";
   }
   return key == "nominal" ? "the nominal value is compared" : "";
+}
+
+/// Returns the width of the number's 95 % interval; 0 if it has none or it is unbounded.
+double interval_width(const AnswerNumber& number) {
+  const bool is_bounded = number.interval && number.interval->low && number.interval->high;
+  return is_bounded ? *number.interval->high - *number.interval->low : 0.0;
+}
+
+/// Throws Failure if the limit is a percentage and one of the numbers is a count.
+void require_share(const Limit& limit, const std::vector<AnswerNumber>& numbers) {
+  const auto count = std::ranges::find(numbers, true, &AnswerNumber::is_whole);
+  if (limit.type->is_share && count != numbers.end()) {
+    const std::string_view words = to_string(limit.type->direction);
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("\"{}\" is a percentage, but '{}' is a whole number, {:.0f}; expected {} and a number without unit, such "
+                    "as \"{} {:.0f}\"",
+                    limit.text, count->name, count->value, words, words, count->value));
+  }
 }
 
 /// Does the same as numbers_at(); if there is none, but a threshold of that name, the reason says so.
@@ -108,6 +116,7 @@ std::string parse_number_limit(std::string_view name, std::string_view text, Lim
 Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   const Bound direction = limit.type->direction;
   const std::vector<AnswerNumber> numbers = numbers_named(limit.type->name, answer);
+  require_share(limit, numbers);
   const auto is_worse = [direction](const AnswerNumber& one, const AnswerNumber& other) {
     return direction == Bound::at_most ? worse_end(one, direction) > worse_end(other, direction)
                                        : worse_end(one, direction) < worse_end(other, direction);
@@ -137,7 +146,11 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   std::string detail = numbers.size() > 1 ? fmt::format("{}, of {} numbers", worst.name, numbers.size()) : std::string();
   detail += compared.empty() || detail.empty() ? compared : "; " + compared;
   const double origin_value = worst.unit == "degC" ? base::kSheetTemperature_C : 0.0;
-  return {.value = value, .origin_value = origin_value, .detail = detail, .is_never = std::isinf(worst.value)};
+  return {.value = value,
+          .origin_value = origin_value,
+          .detail = detail,
+          .is_never = std::isinf(worst.value),
+          .interval_width_value = interval_width(worst)};
 }
 
 }  // namespace heatsoak::check

@@ -48,10 +48,11 @@ struct SettingText {
 std::span<const SettingText> all_settings();
 
 struct Measured {
-  double value = 0.0;         ///< in the unit of the threshold
-  double origin_value = 0.0;  ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
-  std::string detail = {};    ///< basis of the value, one line for people; may be empty
-  bool is_never = false;      ///< the event never happens, so that its time, the value, is infinite
+  double value = 0.0;                 ///< in the unit of the threshold
+  double origin_value = 0.0;          ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
+  std::string detail = {};            ///< basis of the value, one line for people; may be empty
+  bool is_never = false;              ///< the event never happens, so that its time, the value, is infinite
+  double interval_width_value = 0.0;  ///< of the value's 95 % interval; --update derives the room from it if it is the larger distance
 };
 
 /// The loosest limit that a check may set, such as the motor's own winding limit.
@@ -71,11 +72,11 @@ struct ThresholdType {
   bool is_share = false;  ///< a pure number that is shown in percent
   bool is_whole = false;  ///< a count: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
-  base::Range range = {};         ///< permitted values of the limit
-  Room room = Room::share;        ///< room that --update leaves
-  double least_size_ratio = 0.0;  ///< in the unit of the threshold: smallest distance to the origin from which --update computes the room
-  std::string_view meaning;       ///< exact definition of the compared value
-  std::string_view example;       ///< limit that can be pasted
+  base::Range range = {};             ///< permitted values of the limit
+  Room room = Room::share;            ///< room that --update leaves
+  double least_distance_value = 0.0;  ///< in the unit of the threshold; --update counts a smaller distance to the origin as this one
+  std::string_view meaning;           ///< exact definition of the compared value
+  std::string_view example;           ///< limit that can be pasted
   std::vector<Setting> needs;
   std::vector<Setting> takes = {};  ///< optional settings that change the value
   /// Returns the loosest permitted limit; nothing if every limit in `range` is permitted. Null has the same meaning.

@@ -34,7 +34,7 @@ const Json kAnswer = Json::parse(R"({
   "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
   "residual_tests": {"before": {"winding_C": {"periodogram_over_band": 1.1, "ljung_box_p": 0.4, "correlated_with": {"current": 0.1}}}},
   "power_balance_W": {"copper_loss": {"winding": 5.0}}, "curve": {"driver": [1.0], "driver_unit": "rad/s", "value": [2.0], "unit": "W"},
-  "knots": [1.0, 2.0]})");
+  "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
 
 std::string refusal(std::string_view place) {
   try {
@@ -230,6 +230,17 @@ TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
   EXPECT_THAT(all[7].reason, HasSubstr("'rank' is a threshold, not a number of a command's answer"));
 }
 
+TEST_F(CommandChecks, ACountIsNotComparedWithAPercentage) {
+  const std::vector<Outcome> all =
+      outcomes("over = \"at least 100 %\"\n\"error.winding_C.samples\" = \"at most 40 %\"\ncoverage_90.winding_C = \"at least 90 %\"\n");
+  EXPECT_FALSE(all[0].measured || all[1].measured);
+  EXPECT_THAT(explanation(all[0]),
+              AllOf(HasSubstr(":5:8: "), HasSubstr("\"at least 100 %\" is a percentage, but 'over' is a whole number, 2"),
+                    HasSubstr("expected at least and a number without unit, such as \"at least 2\"")));
+  EXPECT_THAT(explanation(all[1]), AllOf(HasSubstr(":6:29: "), HasSubstr("'error.winding_C.samples' is a whole number, 400")));
+  EXPECT_TRUE(all[2].passed) << all[2].reason;
+}
+
 TEST_F(CommandChecks, AListLimitsBothSides) {
   const std::vector<Outcome> all = outcomes("over = [\"at least 1\", \"at most 3\"]\nplanners.fast.distance_m = [\"at least 1 km\"]\n");
   ASSERT_EQ(all.size(), 3U);
@@ -264,14 +275,18 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
       "planners.fast.peaks_C.p05 = \"at most 30 degC\"\n"
       "cold_C = \"at most 5 degC\"\n"
       "room_C = \"at least 50 degC\"\n"
-      "idle_s = \"at most 3 s\"\n");
+      "idle_s = \"at most 3 s\"\n"
+      "\"wheels.1.damping_V_s_per_rad.value\" = \"at most 1 V s/rad\"\n"
+      "\"drift_K.value\" = \"at most 1 K\"\n");
   const std::string after = with_new_limits(text_, all, 0.05);
   EXPECT_THAT(after, HasSubstr("\"planners.fast.distance_m\" = 'at least 0.855 km' # far\n"));
   EXPECT_THAT(after, HasSubstr("over = \"at most 2.1\"\n"));
   EXPECT_THAT(after, HasSubstr("planners.fast.peaks_C.p05 = \"at most 41 degC\"\n")) << "5 % of at least 20 K";
   EXPECT_THAT(after, HasSubstr("cold_C = \"at most 11.6 degC\"\n")) << "below 25 degC";
   EXPECT_THAT(after, HasSubstr("room_C = \"at least 24 degC\"\n")) << "no rise at all";
-  EXPECT_THAT(after, HasSubstr("idle_s = \"at most 0.01 s\"\n")) << "5 % of 0.2 s";
+  EXPECT_THAT(after, HasSubstr("idle_s = \"at most 0 s\"\n")) << "a value without a scale of its own";
+  EXPECT_THAT(after, HasSubstr("value\" = \"at most 0.0315 V s/rad\"\n")) << "5 % of the end of the interval, which is more than its width";
+  EXPECT_THAT(after, HasSubstr("\"drift_K.value\" = \"at most 0.293 K\"\n")) << "5 % of the width of the interval";
   EXPECT_TRUE(std::ranges::all_of(all, &Outcome::passed));
 }
 

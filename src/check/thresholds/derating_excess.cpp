@@ -25,7 +25,7 @@ ThresholdType derating_excess() {
   return {.name = {},
           .unit = "A",
           .range = base::Range::between(0.0, 1e3),
-          .least_size_ratio = 1.0,
+          .least_distance_value = 1.0,
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
               "options, over all speeds and temperatures. A C header also fails if it is of another motor or its observer differs from a "
