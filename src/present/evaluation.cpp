@@ -307,11 +307,18 @@ std::string sparkline(const select::MotorEvaluation& motor, double ambient_C) {
 namespace {
 
 /// States the rest of a hot motor.
-std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id) {
+std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id, double ambient_C) {
+  if (rests.front().over_without_current) {
+    return fmt::format(
+        "Rest of a hot {}: no rest lets it play on within its limits, because even without current it does not stay below them in air of "
+        "{:.0f} °C; all values are nominal.",
+        motor_id, ambient_C);
+  }
   std::string text;
   for (const select::RestOfHotMotor& each : rests) {
-    const std::string rest =
-        each.all_s ? duration_text(*each.all_s) : fmt::format("more than {} from {} of {} places in the duty", duration_text(select::kLongestRest_s), each.starts_never, each.starts);
+    const std::string rest = each.all_s ? duration_text(*each.all_s)
+                                        : fmt::format("more than {} from {} of {} places in the duty",
+                                                      duration_text(select::kLongestRest_s), each.starts_never, each.starts);
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", duration_text(each.play_s), rest);
   }
   return fmt::format(
@@ -345,7 +352,7 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
   for (const auto& [id, rests] : answer.rests) {
     if (id == results.front().motor_id || id == answer.robot.drive.motor) {
-      document.add_note(Severity::background, rest_words(rests, id));
+      document.add_note(Severity::background, rest_words(rests, id, answer.duty.ambient_C.value));
     }
   }
   if (answer.draw_count == 0 && results.front().samples > 0) {

@@ -30,7 +30,8 @@ Json json(const std::vector<select::RestOfHotMotor>& rests) {
                    {"rest_half_s", rounded(each.half_s, 0)},
                    {"rest_all_s", rounded(each.all_s, 0)},
                    {"starts", each.starts},
-                   {"starts_never", each.starts_never}});
+                   {"starts_never", each.starts_never},
+                   {"over_without_current", each.over_without_current}});
   }
   return all;
 }

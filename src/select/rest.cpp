@@ -47,7 +47,11 @@ class HotMotor {
     step_s_ = std::min({step_s_, longest_step_s(strongest->at), longest_step_s(fastest->at)});
   }
 
-  /// Cools the motor from its hottest steady state. Returns false if no current brings it to a limit.
+  /// Returns whether the motor that stands still without current is not below its limits in steady state.
+  [[nodiscard]] bool is_over_without_current() const { return excess_K(0.0) >= 0.0; }
+
+  /// Cools the motor, which must be below its limits without current, from its hottest steady state. Returns false if no current brings it
+  /// to a limit.
   bool rests() {
     const std::optional<State> hot_C = at_its_limit();
     if (!hot_C) {
@@ -134,9 +138,6 @@ class HotMotor {
         return std::nullopt;
       }
     }
-    if (excess_K(0.0) >= 0.0) {
-      return std::nullopt;
-    }
     const auto excess = [this](double current_A) { return excess_K(current_A); };
     thermal::OperatingPoint<double> at = rest_;
     at.current_rms_A = boost::math::tools::bisect(excess, 0.0, high_A, boost::math::tools::eps_tolerance<double>(kBits)).first;
@@ -194,14 +195,30 @@ class HotMotor {
 
 }  // namespace
 
+namespace {
+
+/// Returns the rests of a motor for which none suffices.
+std::vector<RestOfHotMotor> rests_without_effect(int starts) {
+  std::vector<RestOfHotMotor> all;
+  for (const double play_s : kPlays_s) {
+    all.push_back({.play_s = play_s, .half_s = {}, .all_s = {}, .starts = starts, .starts_never = starts, .over_without_current = true});
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<RestOfHotMotor> rests_of_hot_motor(const robot::Robot& robot, const duty::Duty& duty, const duty::WheelDemand& demand,
                                                const motor::Motor& motor) {
   HotMotor hot(robot, duty, demand, motor);
+  const std::vector<double> starts_s = hot.starts_s();
+  if (hot.is_over_without_current()) {
+    return rests_without_effect(static_cast<int>(starts_s.size()));
+  }
   std::vector<RestOfHotMotor> all;
   if (!hot.rests()) {
     return all;
   }
-  const std::vector<double> starts_s = hot.starts_s();
   for (const double play_s : kPlays_s) {
     std::vector<int> rests;
     for (const double start_s : starts_s) {

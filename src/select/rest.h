@@ -20,8 +20,9 @@ struct RestOfHotMotor {
   /// Rest that suffices for half and for all of the places of the duty at which play may begin; empty if no rest up to kLongestRest_s does.
   std::optional<double> half_s;
   std::optional<double> all_s;
-  int starts = 0;        ///< number of these places
-  int starts_never = 0;  ///< places from which even the longest rest does not suffice
+  int starts = 0;                     ///< number of these places
+  int starts_never = 0;               ///< places from which even the longest rest does not suffice
+  bool over_without_current = false;  ///< not below its limits even in steady state without current, so that no rest suffices
 };
 
 /// Returns the rests for kPlays_s, in whole seconds. The hot motor stood still with the current that holds its first node at the limit in

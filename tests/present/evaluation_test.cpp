@@ -220,7 +220,23 @@ TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
       rests.push_back(each.words);
     }
   }
-  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("5 min (more than 60 min from 3 of 4 places"))));
+  EXPECT_THAT(rests, testing::ElementsAre(
+                         AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("5 min (more than 60 min from 3 of 4 places"))));
+}
+
+TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limit_without_current) {
+  select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
+  motor.motor_id = "m";
+  simulate::EvaluationAnswer answer = answer_with({motor});
+  answer.duty.ambient_C.value = 160.0;
+  answer.rests["m"] = {{.play_s = 60.0, .half_s = {}, .all_s = {}, .starts = 4, .starts_never = 4, .over_without_current = true}};
+  const Document document = evaluation_document(answer);
+  EXPECT_TRUE(std::ranges::any_of(document.notes, [](const Note& each) {
+    return each.words.starts_with("Rest of a hot m: no rest") && each.words.find("160 °C") != std::string::npos;
+  }));
+  const nlohmann::ordered_json rest = evaluation_json(answer).at("motors").at(0).at("rest_of_hot_motor").at(0);
+  EXPECT_EQ(rest.at("over_without_current"), true);
+  EXPECT_TRUE(rest.at("rest_all_s").is_null());
 }
 
 TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {

@@ -75,9 +75,27 @@ TEST(RestOfHotMotor, begins_at_the_limit_of_the_stator_if_that_comes_first) {
   EXPECT_FALSE(limited.back().all_s) << "4 A hold the stator above 40 °C";
 }
 
-TEST(RestOfHotMotor, is_empty_for_a_limit_below_the_air) {
+TEST(RestOfHotMotor, never_suffices_for_a_limit_below_the_air) {
   motor::Motor motor = simple_motor();
-  motor.nominal.winding_limit_C = 20.0;
+  for (const bool is_of_stator : {false, true}) {
+    motor.nominal.winding_limit_C = is_of_stator ? 155.0 : 20.0;
+    motor.nominal.stator_limit_C = is_of_stator ? std::optional(24.0) : std::nullopt;
+    const std::vector<RestOfHotMotor> rests = rests_on(constant_current(1.0), motor);
+    ASSERT_EQ(rests.size(), kPlays_s.size());
+    for (const RestOfHotMotor& each : rests) {
+      EXPECT_TRUE(each.over_without_current);
+      EXPECT_FALSE(each.half_s || each.all_s);
+      EXPECT_GT(each.starts, 0);
+      EXPECT_EQ(each.starts_never, each.starts);
+    }
+  }
+}
+
+// Copper loss without a rise of resistance or a limit above every reachable temperature has no hot state.
+TEST(RestOfHotMotor, is_empty_if_no_current_reaches_a_limit) {
+  motor::Motor motor = simple_motor();
+  motor.nominal.winding_limit_C = 1e12;
+  motor.nominal.temperature_coefficient_per_K = 0.0;
   EXPECT_TRUE(rests_on(constant_current(1.0), motor).empty());
 }
 
