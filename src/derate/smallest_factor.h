@@ -55,7 +55,7 @@ std::optional<double> smallest_factor(const FactorGrid& grid, const CheckFactor&
   constexpr int kMostExpected = 4;                                      // if these do not lead to the result, bisection takes fewer checks
   FactorGrid::Cell open{0.0, std::numeric_limits<double>::infinity()};  // rejected at the low end, accepted at the high one
   double guess_ratio = std::min(grid.from_ratio, grid.most_ratio);
-  for (int tried = 0;; ++tried) {
+  for (int used = 0;;) {
     const FactorGrid::Cell cell = grid.cell_of(guess_ratio);
     if (cell.low_ratio == open.low_ratio && cell.high_ratio == open.high_ratio) {
       return std::isfinite(open.high_ratio) ? std::optional(open.high_ratio) : std::nullopt;
@@ -66,7 +66,9 @@ std::optional<double> smallest_factor(const FactorGrid& grid, const CheckFactor&
     const double above_ratio = std::nextafter(open.low_ratio, std::numeric_limits<double>::infinity());
     const bool is_bounded = std::isfinite(open.high_ratio);
     const double largest_ratio = is_bounded ? open.high_ratio : grid.step_of(above_ratio).high_ratio;
-    if (tried < kMostExpected && !std::isnan(found.expected_ratio)) {
+    const bool is_far = !is_bounded && found.expected_ratio >= largest_ratio;
+    if (!is_far && used < kMostExpected && !std::isnan(found.expected_ratio)) {
+      ++used;
       guess_ratio = std::clamp(found.expected_ratio, above_ratio, largest_ratio);
     } else {
       guess_ratio = is_bounded ? 0.5 * (open.low_ratio + open.high_ratio) : largest_ratio;
