@@ -29,8 +29,8 @@ ThresholdType derating_excess() {
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
               "options, over all speeds and temperatures. A C header also fails if it is of another motor or its observer differs from a "
-              "fresh one. The default of 400 drawn motors takes 5 to 10 s per motor; write and check the table with derate = { samples = "
-              "\"60\" } for 1 s. The limit of --update leaves 0.05 A if the value is 0",
+              "fresh one. The default of 400 drawn motors takes up to 3 s per motor; write and check the table with derate = { samples = "
+              "\"60\" } for half of that. The limit of --update leaves 0.05 A if the value is 0",
           .example = "at most 0 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
