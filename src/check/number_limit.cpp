@@ -73,11 +73,11 @@ void require_share(const Limit& limit, const std::vector<AnswerNumber>& numbers)
   const auto count = std::ranges::find(numbers, true, &AnswerNumber::is_whole);
   if (limit.type->is_share && count != numbers.end()) {
     const std::string_view words = to_string(limit.type->direction);
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        fmt::format("\"{}\" is a percentage, but '{}' is a whole number, {:.0f}; expected {} and a number without unit, such "
-                    "as \"{} {:.0f}\"",
-                    limit.text, count->name, count->value, words, words, count->value));
+    throw base::bad_input(
+        limit.at, count->name,
+        fmt::format("\"{}\" is a percentage, but the number is a whole one, {:.0f}; expected {} and a number without unit, "
+                    "such as \"{} {:.0f}\"",
+                    limit.text, count->value, words, words, count->value));
   }
 }
 
