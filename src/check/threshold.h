@@ -48,11 +48,12 @@ struct SettingText {
 std::span<const SettingText> all_settings();
 
 struct Measured {
-  double value = 0.0;                 ///< in the unit of the threshold
-  double origin_value = 0.0;          ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
-  std::string detail = {};            ///< basis of the value, one line for people; may be empty
-  bool is_never = false;              ///< the event never happens, so that its time, the value, is infinite
-  double interval_width_value = 0.0;  ///< of the value's 95 % interval; --update derives the room from it if it is the larger distance
+  double value = 0.0;         ///< in the unit of the threshold
+  double origin_value = 0.0;  ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
+  std::string detail = {};    ///< basis of the value, one line for people; may be empty
+  bool is_never = false;      ///< the event never happens, so that its time, the value, is infinite
+  double interval_width_value =
+      0.0;  ///< width of the value's 95 % interval; --update leaves a share of it as room if it exceeds the distance
 };
 
 /// The loosest limit that a check may set, such as the motor's own winding limit.

@@ -88,7 +88,7 @@ std::vector<thermal::Network> drawn_networks(const motor::Motor& motor, std::uin
 inline constexpr double kCertainty_share = 0.95;
 
 struct GuaranteeOptions {
-  double required_share = 0.95;  ///< of motors that keep every limit in every use, shown at the level kCertainty_share
+  double required_share = 0.95;  ///< share of motors that must keep every limit in every use, shown at the level kCertainty_share
   int samples = 400;             ///< motors drawn for the check; the same number of other motors finds the safety factor
   std::uint64_t seed = 1;
   int threads = 0;

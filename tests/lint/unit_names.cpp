@@ -56,7 +56,7 @@ const std::set<std::string, std::less<>> kUnitBeside{// values, ranges and toler
                                                      // fixed-point values: the expression of that type has the unit
                                                      "most_error",
                                                      // thresholds: their ThresholdType has the unit
-                                                     "limit_value", "origin_value",
+                                                     "limit_value", "origin_value", "least_distance_value", "interval_width_value",
                                                      // distributions: the variable of that type has the unit
                                                      "nominal", "p05", "p50", "p95",
                                                      // columns of logs: the log has the unit
