@@ -37,7 +37,7 @@ void set_motion(thermal::OperatingPoint<double>& at, const thermal::OperatingPoi
 thermal::OperatingPoint<double> MeanInputs::zero() {
   thermal::OperatingPoint<double> at;
   thermal::for_each_quantity([](double& value) { value = 0.0; }, at);
-  at.known = ~thermal::Quantities{0};
+  at.known = ~thermal::QuantitySet{0};
   return at;
 }
 

@@ -11,7 +11,7 @@
 namespace heatsoak::thermal {
 
 /// Set of optional quantities: bit `row` stands for that row of kQuantities.
-using Quantities = unsigned;
+using QuantitySet = unsigned;
 /// Largest number of log columns that the curves of one motor can use.
 inline constexpr std::size_t kLogColumns = 3;
 
@@ -46,9 +46,9 @@ struct OperatingPoint {
   S second_column = S(0.0);
   S third_column = S(0.0);
   S copper_loss_W = S(0.0);  ///< copper loss of the network, which its drive stage sets before the laws are evaluated
-  Quantities known = 0;      ///< optional quantities that are known, equal for all samples of Lanes; see set_quantity()
+  QuantitySet known = 0;      ///< optional quantities that are known, equal for all samples of Lanes; see set_quantity()
 
-  [[nodiscard]] constexpr bool knows(Quantities quantities) const { return (known & quantities) == quantities; }
+  [[nodiscard]] constexpr bool knows(QuantitySet quantities) const { return (known & quantities) == quantities; }
 };
 
 /// Signals that a law may need besides the temperatures of its nodes and of the surroundings. A log without one of them holds no evidence
@@ -202,17 +202,17 @@ constexpr std::size_t quantity_row(std::string_view name) {
 }
 
 /// Returns the bit of a quantity in OperatingPoint::known; 0 if it is not optional.
-constexpr Quantities known_bit(std::size_t row) { return kQuantities<double>[row].is_optional ? Quantities{1} << row : 0; }
-static_assert(kQuantityCount <= std::numeric_limits<Quantities>::digits, "one bit for each row");
+constexpr QuantitySet known_bit(std::size_t row) { return kQuantities<double>[row].is_optional ? QuantitySet{1} << row : 0; }
+static_assert(kQuantityCount <= std::numeric_limits<QuantitySet>::digits, "one bit for each row");
 
-inline constexpr Quantities kNeighbour = known_bit(quantity_row("neighbour_temperature"));
+inline constexpr QuantitySet kNeighbour = known_bit(quantity_row("neighbour_temperature"));
 
 /// Row of a column of the log; `place` is below kLogColumns.
 constexpr std::size_t column_row(std::size_t place) {
   constexpr std::size_t kFirst = quantity_row("first_column");
   return kFirst + place;
 }
-constexpr Quantities column_bit(std::size_t place) { return known_bit(column_row(place)); }
+constexpr QuantitySet column_bit(std::size_t place) { return known_bit(column_row(place)); }
 static_assert(quantity_row("third_column") == column_row(kLogColumns - 1) && column_bit(0) != 0 && kNeighbour != 0);
 
 /// Sets a quantity of the table and, if it is optional, its bit in `known`. Code that fills an operating point sets each optional quantity

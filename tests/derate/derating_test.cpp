@@ -226,7 +226,7 @@ TEST(Derate, ObserverKnowsEveryOptionalInput) {
   const std::array<double, observed::kSignalCount> signals{1.0, 100.0, 30.0, 1.0, 60.0, 10.0, 5.0};
   const thermal::OperatingPoint<double> at = operating_point<double>(ecx_32().nominal, twente(), signals);
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
-    const thermal::Quantities bit = thermal::known_bit(observed::kRows[i]);
+    const thermal::QuantitySet bit = thermal::known_bit(observed::kRows[i]);
     EXPECT_TRUE(at.knows(bit)) << observed::signals()[i].name;
   }
   EXPECT_EQ(at.neighbour_C, 60.0);

@@ -85,7 +85,7 @@ TEST(SignalTable, ColumnsThatAreReadDirectlyReachTheOperatingPoint) {
     const LogRows rows(log, options);
     EXPECT_EQ(rows.at(0).*each.value, each.from == thermal::FromColumn::magnitude ? 3.0 : -3.0) << each.name;
     EXPECT_EQ(rows.at(1).*each.value, 4.0) << each.name;
-    const thermal::Quantities bit = thermal::known_bit(thermal::quantity_row(each.name));
+    const thermal::QuantitySet bit = thermal::known_bit(thermal::quantity_row(each.name));
     EXPECT_EQ(rows.at(0).known, bit) << each.name << ": a law that asks whether it is known would ignore it";
   }
 }

@@ -98,7 +98,7 @@ TEST_P(EveryEffect, heat_is_finite_at_the_ends_of_every_range) {
     for (const double size : {0.0, 1.0, 1e4}) {
       OperatingPoint<double> at;
       for_each_quantity([size](double& quantity) { quantity = size; }, at);
-      at.known = ~Quantities{0};
+      at.known = ~QuantitySet{0};
       for (const double hot_C : {-60.0, 25.0, kDestroyed_C}) {
         for (const double cold_C : {-60.0, 25.0, kDestroyed_C}) {
           std::vector<double> temperature_C(type().nodes.size(), cold_C);
