@@ -277,8 +277,8 @@ struct Output {
   Reason reason[kMostWheels] = {};                       ///< strongest reason per wheel: faults before limits
   PerWheel allowed_current_A = {};                       ///< magnitude of the limit for the present direction of the current
   PerWheel winding_C = {};                               ///< temperature of the guard's observer, which counts heat_ratio times the heat
-  float time_to_guard_limit_s = 0.0F;                    ///< time until the guard limits at the present load; kLongTime_s: never
-  bool is_warning = false;                               ///< true if the guard will limit within Config::warning_time_s
+  float time_to_guard_limit_s = 0.0F;                    ///< until the guard limits the load or its peaks; 0: now; kLongTime_s: never
+  bool is_warning = false;                               ///< true if the guard limits now or within Config::warning_time_s
   Reason robot_reason = Reason::none;                    ///< fault of the whole robot
 };
 

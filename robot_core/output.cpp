@@ -20,7 +20,8 @@ float reported_C(const Config& config, float winding_C) {
 }  // namespace
 
 void make_output(const Config& config, const State& state, const Validated& validated, const LimitedVoltages& limited, Output& out) {
-  float time_to_limit_s = kLongTime_s;
+  // Times are not negative, and such floats are ordered like their bits. A sign that has flipped counts as a long time.
+  auto time_to_limit = __builtin_bit_cast(std::uint32_t, kLongTime_s);
   const float per_battery_V = 1.0F / validated.pwm_battery_V;
   for (int i = 0; i < config.wheel_count; ++i) {
     const LimitedWheel& wheel = limited.wheel[i];
@@ -32,14 +33,17 @@ void make_output(const Config& config, const State& state, const Validated& vali
     out.reason[i] = wheel.reason;
     out.allowed_current_A[i] = wheel.allowed_A;
     out.winding_C[i] = reported_C(config, guard.state_C[0]);
-    time_to_limit_s = smaller(time_to_limit_s, guard.time_to_limit_s);
+    const auto of_guard = __builtin_bit_cast(std::uint32_t, guard.time_to_limit_s);
+    time_to_limit = of_guard < time_to_limit ? of_guard : time_to_limit;
+    // An estimate is up to 0.13 s old, and a current can rise faster.
+    time_to_limit = wheel.reason == Reason::guard ? 0 : time_to_limit;
   }
   for (int i = config.wheel_count; i < kMostWheels; ++i) {
     out.voltage_V[i] = out.pwm_ratio[i] = out.allowed_current_A[i] = out.winding_C[i] = 0.0F;
     out.reason[i] = Reason::none;
     out.is_open[i] = true;
   }
-  out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : larger(0.0F, time_to_limit_s);
+  out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : __builtin_bit_cast(float, time_to_limit);
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
   out.robot_reason = validated.robot_fault != Reason::none ? validated.robot_fault : validated.command_fault;
 }

@@ -242,7 +242,9 @@ GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* 
   out.is_unknown_input = replaced.all != 0;
   const float smoothing = model.period_s / kSmoothing_s;
   state.heating_K_per_s += smoothing * (rate_K_per_s[0] - state.heating_K_per_s);
-  state.load_squared_A2 += smoothing * (validated[guard_current_A] * validated[guard_current_A] - state.load_squared_A2);
+  // Under a pulsed load the pulses reach the limit first, so the load follows them at once and falls slowly.
+  const float square_A2 = validated[guard_current_A] * validated[guard_current_A];
+  state.load_squared_A2 = larger(square_A2, state.load_squared_A2 + smoothing * (square_A2 - state.load_squared_A2));
   state.speed_rad_per_s = validated[guard_speed_rad_per_s];
   ++state.steps;
   state.rounded_up = time.rounded_up;

@@ -60,8 +60,8 @@ struct alignas(8) GuardState {
   float carry_K[kMostGuardNodes] = {};
   float speed_rad_per_s = 0.0F;  ///< motor shaft speed in the last step
   float heating_K_per_s = 0.0F;  ///< heating rate of the winding, smoothed
-  float load_squared_A2 = 0.0F;  ///< squared current, smoothed
-  float time_to_limit_s = 0.0F;  ///< estimated time until the allowed current falls below the present load; kLongTime_s: never
+  float load_squared_A2 = 0.0F;  ///< squared current; rises at once, falls with a time constant of 3 s
+  float time_to_limit_s = 0.0F;  ///< estimated time until the allowed current falls below that load; kLongTime_s: never
   std::uint32_t steps = 0;
   std::uint32_t rounded_up = 0;  ///< State::rounded_up in the last step
   float hidden_A2 = 0.0F;        ///< leaky mean square of the current by voltage and speed minus that of the counted current
@@ -117,7 +117,7 @@ struct GuardPeriod {
 GuardOutput step_guard(const GuardModel& model, GuardState& state, const float* signal, float braking_reserve_K,
                        const GuardPeriod& time = {});
 
-/// Updates GuardState::time_to_limit_s. Extrapolates the smoothed heating linearly at the present load: too short near the steady state.
+/// Updates GuardState::time_to_limit_s: extrapolates the smoothed heating linearly. Too short near the steady state and for pulses.
 void estimate_time_to_limit(const GuardModel& model, GuardState& state, float braking_reserve_K);
 
 /// Allowed current of the table at one point; 0 for NaN and above the highest speed or temperature.

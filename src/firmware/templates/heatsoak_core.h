@@ -82,8 +82,9 @@ typedef struct heatsoak_core_output {
   uint8_t reason[HEATSOAK_CORE_MOST_WHEELS];  /* heatsoak_core_reason, strongest per wheel: faults before limits */
   float allowed_current_A[HEATSOAK_CORE_MOST_WHEELS];
   float winding_C[HEATSOAK_CORE_MOST_WHEELS]; /* hotter than the nominal motor by the safety factor on heat */
-  float time_to_guard_limit_s;                /* time until the thermal guard limits if the load continues; 3600: it does not */
-  bool is_warning;                            /* true if that time is short */
+  float time_to_guard_limit_s;                /* until the thermal guard limits if the load continues, a pulsed one with its peaks; 0: now;
+                                                 3600: it does not */
+  bool is_warning;                            /* true if that time is short, and while the guard limits */
   uint8_t robot_reason;                       /* heatsoak_core_reason: fault of the whole robot */
 } heatsoak_core_output;
 
