@@ -96,7 +96,12 @@
 //   - Swapped wheel sensors until they are found, which depends on the drive: in one smooth drive of RoboTeam Twente's robot of 2024 after
 //     0.15 s for wheels 1 and 3 or 2 and 4, 0.7 s for 2 and 3, 2.8 s for 1 and 4, 4.9 s for 3 and 4, not within 6 s for 1 and 2. Swapped
 //     samples of opposite wheels, or of any two of three wheels, fit another motion of the robot equally well. Only the reaction to
-//     currents shows the swap.
+//     currents shows the swap. On three wheels a current may exceed the limit by up to 1.7 A for 0.2 s, also after fault 113. With
+//     torque commands it may exceed the limit for two periods at a time.
+//   - Wrong wiring or units of motors: one motor reversed, the leads of two motors swapped, all encoders reversed, all with one wrong scale.
+//     Most drives show no code, others code 116 for about a second, or 113, 117 or 121 for a correct sensor. All encoders at half scale give
+//     twice the speed limit. With swapped leads the current exceeds the limit by up to 1.7 A for 0.1 s at a time, with wheel speeds or
+//     torques as commands by up to 5 A. docs/firmware.md has a first drive that finds each of these.
 //   - One wheel sensor with a wrong scale, sign or offset, or stuck with noise, until fault 117. In 77 of 80 drives of 12 s a wrong sign
 //     was found, after 1.4 s on average; a scale of a half in 70, after 4.5 s (tests/robot_core/wrong_wheel_sensor_test.cpp). The robot
 //     then turns and its wheels work against each other. In the modes wheel_speed and wheel_torque fault 117 is not searched for. With a
@@ -127,7 +132,8 @@
 //   - Pushes on a moving robot can look like swapped sensors until these are ruled out: two wheels then keep the limp current until
 //     start(). Of robots pushed with three quarters of their grip for half of the first 10 s, fewer than 5 % with current sensors and 33 %
 //     without (tests/robot_core/swapped_sensors_test.cpp). Of 10 000 robots pushed while they should stand, none.
-//   - All wheel sensors dead with noise: they agree with each other, so the robot is not limited to the limp current.
+//   - All wheel sensors dead with noise: they agree with each other, so the robot is not limited to the limp current. If they freeze
+//     while it moves, currents exceed the limit by up to 1.9 A for 0.6 s at a time, with wheel speeds as commands by up to 3.3 A.
 //   - A gyro with a wrong sign, scale or offset: the robot turns at a wrong rate. If the axles of the front wheels are within 20 degrees of
 //     the x axis, or those of the rear wheels beyond 160 degrees, it can look like a wrong wheel sensor (117).
 //   - A pose that jumps, or is wrong although its age is valid: a pose target then leads to a wrong place.
