@@ -47,8 +47,13 @@ struct CoreSource {
 /// Guard period of a control period: the whole multiple nearest to 10 ms.
 double guard_period_s(double period_s);
 
-/// Returns the folder; equal inputs give equal bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for the hash. Throws Failure
-/// (bad_input) as make_core_config() and HostGuard do, or if a file cannot be read.
+/// Longest control period of a generated core. The watchdog of firmware/board_default.c ends within robot_core::kWatchdog_s at the slowest
+/// rate of its oscillator, 17 kHz. At the fastest, 47 kHz, it ends after 7.15 ms and must not end within two periods.
+inline constexpr double kLongestWatched_s = 84 * 4 / 47e3 / 2.0;
+
+/// Returns the folder; equal inputs give equal bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for
+/// the hash. Throws Failure (bad_input) as make_core_config() and HostGuard do, if the period is above kLongestWatched_s, or if a file
+/// cannot be read.
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version);
 

@@ -24,6 +24,12 @@ constexpr double kLeastGain_ratio = 0.5;  ///< k_p/(K_t·n)
 
 double ultimate_gain() { return 2.0 * std::tan(std::numbers::pi / 8.0); }
 
+/// Time constants of a wheel on the ground and in the air.
+double loaded_time_s(const WheelLoopPlant& plant) {
+  return plant.loaded_inertia_kg_m2 * plant.volt_per_Nm / (plant.back_emf_V_s_per_rad * plant.gear_efficiency);
+}
+double time_in_air_s(const WheelLoopPlant& plant) { return plant.wheel_inertia_kg_m2 * plant.volt_per_Nm / plant.back_emf_V_s_per_rad; }
+
 }  // namespace
 
 WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::DriveConstants& drive) {
@@ -50,23 +56,26 @@ WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::Driv
   return plant;
 }
 
+double longest_loop_period_s(const WheelLoopPlant& plant) {
+  return std::min(ultimate_gain() / kWheelMargin * time_in_air_s(plant) / kLeastGain_ratio,
+                  2.0 * kDamping * kDelayShare / (kDelay_periods * (1.0 + kLeastGain_ratio)) * loaded_time_s(plant));
+}
+
 WheelLoopGains wheel_loop_gains(const WheelLoopPlant& plant, double period_s) {
-  const double back_emf = plant.back_emf_V_s_per_rad;
-  const double loaded_s = plant.loaded_inertia_kg_m2 * plant.volt_per_Nm / (back_emf * plant.gear_efficiency);
-  const double in_air_s = plant.wheel_inertia_kg_m2 * plant.volt_per_Nm / back_emf;
-  const double wheel_share = ultimate_gain() / kWheelMargin;
-  WheelLoopGains gains;
-  gains.longest_period_s = std::min(wheel_share * in_air_s / kLeastGain_ratio,
-                                    2.0 * kDamping * kDelayShare / (kDelay_periods * (1.0 + kLeastGain_ratio)) * loaded_s);
-  if (period_s > gains.longest_period_s) {
+  const double longest_s = longest_loop_period_s(plant);
+  if (period_s > longest_s) {
     throw base::Failure(
         base::ExitCode::bad_input,
         fmt::format("a control period of {:.3g} ms is too long for the wheel-speed loop of this robot: expected at most {:.3g} ms. Shorten "
                     "it with `generate core --period` (the simulation has 1 ms), or choose a motor with more inertia at the wheel",
-                    1e3 * period_s, 1e3 * gains.longest_period_s));
+                    1e3 * period_s, 1e3 * longest_s));
   }
+  const double back_emf = plant.back_emf_V_s_per_rad;
+  const double loaded_s = loaded_time_s(plant);
+  const double in_air_s = time_in_air_s(plant);
+  WheelLoopGains gains;
   const double by_delay = 2.0 * kDamping * kDelayShare / (kDelay_periods * period_s) * loaded_s - 1.0;
-  const double in_air = wheel_share * in_air_s / period_s;
+  const double in_air = ultimate_gain() / kWheelMargin * in_air_s / period_s;
   const double ratio = std::min(by_delay, in_air);
   gains.wheel_gain_V_s_per_rad = ratio * back_emf;
   gains.wheel_rate_per_s = (1.0 + ratio) / loaded_s;

@@ -19,6 +19,9 @@ struct WheelLoopPlant {
 /// the plane part of (JᵀJ)⁻¹ = J⁺·J⁺ᵀ.
 WheelLoopPlant wheel_loop_plant(const robot::BodyConfig& body, const robot::DriveConstants& drive);
 
+/// Returns the longest control period for which wheel_loop_gains() gives a useful loop.
+double longest_loop_period_s(const WheelLoopPlant& plant);
+
 struct WheelLoopGains {
   double wheel_gain_V_s_per_rad = 0.0;    ///< k_p
   double wheel_integral_V_per_rad = 0.0;  ///< k_i
@@ -27,7 +30,6 @@ struct WheelLoopGains {
   double yaw_integral_per_s2 = 0.0;
   double tracking_time_s = 0.0;
   double wheel_rate_per_s = 0.0;  ///< 2·ζ·ω_0 of the loaded wheel's loop
-  double longest_period_s = 0.0;  ///< longest control period for which these equations give a useful loop
 };
 
 /// Computes the gains. Plant of one wheel: τ·dω/dt = V/(K_t·n) − ω with τ = J·R/(η·(K_t·n)²). Control: V = k_p·e + k_i·∫e dt. Closed loop

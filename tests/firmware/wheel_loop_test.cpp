@@ -150,7 +150,7 @@ TEST(WheelLoop, SettlesWithoutMuchOvershoot) {
 TEST(WheelLoop, RefusesAPeriodThatIsTooLongAndNamesTheLongest) {
   for (const WheelCase& each : kWheelCases) {
     const WheelLoopPlant plant = plant_of(each);
-    const double longest_s = wheel_loop_gains(plant, 0.001).longest_period_s;
+    const double longest_s = longest_loop_period_s(plant);
     const WheelLoopGains at_longest = wheel_loop_gains(plant, longest_s);
     EXPECT_NEAR(at_longest.wheel_gain_V_s_per_rad, 0.5 * plant.back_emf_V_s_per_rad, 1e-9) << each.robot;
     try {

@@ -60,7 +60,7 @@ Command generate_command() {
             app.add_option("--out", options->out, "folder to write, new or empty")->required()->type_name("DIR");
             app.add_flag("--force", options->force, "replace the generated files in a folder that is not empty, keep all others");
             add_quantity(app, "--period", options->core.period_s,
-                         {"period", "s", base::Range::between(1e-4, 0.1), "time between two control steps; 1 ms unless given"});
+                         {"period", "s", base::Range::between(1e-4, 0.1), "time between two control steps, at most 3.57 ms; 1 ms unless given"});
             add_derate_options(app, options->guard.derate);
             session.add_data_option(app);
             session.add_answer_options(app);
