@@ -63,7 +63,7 @@ void limit_demand(const Config& config, const WheelState& state, const Validated
 }
 
 /// Limits one wheel to the allowed current. Shadow mode only counts the excess and returns true if it would have limited.
-bool apply_guard(const Config& config, State& state, float allowed_A, float elapsed_s, WheelDemand& demand) {
+bool apply_guard(const Config& config, State& state, float allowed_A, WheelDemand& demand) {
   if (allowed_A >= demand.most_A) {
     return false;
   }
@@ -73,7 +73,8 @@ bool apply_guard(const Config& config, State& state, float allowed_A, float elap
     return false;
   }
   const float excess_A = smaller(absolute(demand.current_A), demand.most_A) - allowed_A;
-  state.shadow_deficit_A_s += larger(0.0F, excess_A) * elapsed_s;
+  // Counts the coming period, so that a gap of any length in the past adds no more.
+  state.shadow_deficit_A_s += larger(0.0F, excess_A) * config.period_s;
   return excess_A > 0.0F;
 }
 
@@ -193,7 +194,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
     const bool brakes = body_brakes || driving_W[i] < 0.0F;
     const float allowed_A = brakes ? state.wheel[i].allowed_braking_A : state.wheel[i].allowed_A;
     const float earlier_A = demand[i].most_A;
-    would_limit = apply_guard(config, state, allowed_A, validated.elapsed_s, demand[i]) || would_limit;
+    would_limit = apply_guard(config, state, allowed_A, demand[i]) || would_limit;
     if (validated.wheel[i].is_speed_known && demand[i].most_A < earlier_A) {
       least = share_of_wheel(config, i, most_V, demand[i], limited.wheel[i].reason, least);
     }

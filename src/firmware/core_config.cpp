@@ -236,6 +236,7 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
   config.limp_current_A = single(std::min(limp_current_without_guard_A(motor), double{config.current_limit_A}));
   config.plan_step = options.has_pose_targets ? &robot_core::plan_to_pose : nullptr;
   config.predict_pose = options.has_pose_targets ? &robot_core::predict_pose : nullptr;
+  config.shadow_mode = options.shadow_mode;
   return finished(config);
 }
 

@@ -17,6 +17,7 @@ struct CoreOptions {
   double coldest_ambient_C = 0.0;        ///< a winding is never colder
   double lowest_resistance_ratio = 1.0;  ///< smallest terminal resistance of a motor within its tolerance, per nominal one
   bool has_pose_targets = true;          ///< robot_core::plan_to_pose is linked
+  bool shadow_mode = false;              ///< the guard counts what it would limit, and limits nothing
 };
 
 /// Returns the options with lowest_resistance_ratio from the tolerance or range of the motor's terminal_resistance, from the default

@@ -89,7 +89,7 @@ Origins body_origins(const CoreSource& source) {
                                                          : "0: the robot file has no [friction]"},
       {"friction_smoothing_m_per_s", "as in the simulated robot"},
       {"has_friction", "robot file: [friction]"},
-      {"shadow_mode", "off: the guard limits"},
+      {"shadow_mode", source.config.shadow_mode ? "option --shadow: the guard limits nothing" : "off: the guard limits"},
   };
 }
 

@@ -19,6 +19,9 @@ namespace {
 
 constexpr std::string_view kTemplates = "src/firmware/templates/";
 constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 24U;
+constexpr std::string_view kShadowMode =
+    "**Shadow mode: the thermal guard limits no current, so a motor can overheat.** It counts what it would have limited:\n"
+    "`heatsoak_core_read_shadow`. Generate the folder again without `--shadow` before a match.\n\n";
 
 using Words = std::map<std::string, std::string>;
 
@@ -105,6 +108,8 @@ Words words_for(const CoreSource& source, const std::vector<CoreNote>& notes) {
               {"STATE_BYTES", std::to_string(sizeof(robot_core::State))},
               {"CHECK_SUM", fmt::format("0x{:08X}U", source.config.check_sum)},
               {"BATTERY_V", float_literal(0.5F * (source.config.battery_full_V + source.config.battery_lowest_V))},
+              {"SHADOW", source.options.shadow_mode ? "1" : "0"},
+              {"SHADOW_MODE", source.options.shadow_mode ? std::string(kShadowMode) : ""},
               {"LIMITATIONS", limitations(source.robot, source.derating, notes)}};
   add_reasons(words);
   add_places(words, "heatsoak_core_command", "Command");
@@ -132,6 +137,7 @@ std::string options_text(const motor::Motor& motor, const CoreOptions& options, 
       "--period {:.9g}s --ambient {:.9g}degC --coldest {:.9g}degC --approach {:.9g}s --confidence {:.9g} --samples {} --seed {}",
       options.period_s, derate.hottest_ambient_C, derate.coldest_ambient_C, derating.rules.approach_s, derate.guarantee.required_share,
       derate.guarantee.samples, derate.guarantee.seed);
+  text += options.shadow_mode ? " --shadow" : "";
   for (const auto& [key, value] : motor.assumed) {
     text += fmt::format(" --condition {}={}", key, value);
   }
@@ -191,6 +197,9 @@ CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, cons
                     .limp_current_A = source.config.limp_current_A,
                     .braking_reserve_K = source.config.braking_reserve_K,
                     .notes = notes_on(robot, motor, derating, source.config.braking_reserve_K)};
+  if (options.shadow_mode) {
+    folder.notes.insert(folder.notes.begin(), ShadowModeChosen{});
+  }
   folder.files.push_back({"core_config.h", core_config_header(source)});
   folder.files.push_back({"motor_guard.h", motor_guard_header(source)});
   folder.files.push_back({"motor_guard.cpp", motor_guard_source(source)});

@@ -64,6 +64,11 @@ std::string say(const ConditionStated& of) {
   return fmt::format("the guard is valid only if {} is {}, as stated with --condition", of.key, of.value);
 }
 
+std::string say(const ShadowModeChosen& /*of*/) {
+  return "the guard limits no current, so a motor can overheat: --shadow only counts what it would have limited; generate the core again "
+         "without --shadow before a match";
+}
+
 std::string say(const StopTakesCurrent& of) {
   return fmt::format(
       "the robot drives with less current than the motor could carry, because one full stop heats the winding by {:.0f} K of the {:.0f} K "

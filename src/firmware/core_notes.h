@@ -48,8 +48,10 @@ struct StopTakesCurrent {
   double room_K = 0.0;  ///< from the hottest air to the winding limit
   double hottest_ambient_C = 0.0;
 };
+/// The core was generated with --shadow.
+struct ShadowModeChosen {};
 using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
-                              ConditionStated, StopTakesCurrent>;
+                              ConditionStated, StopTakesCurrent, ShadowModeChosen>;
 
 /// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,

@@ -23,6 +23,7 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
           {"motor", derating.motor_id},
           {"out", out},
           {"period_s", options.period_s},
+          {"shadow_mode", options.shadow_mode},
           {"input_hash", {{"name", derate::kInputHash}, {"value", folder.hash}}},
           {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
           {"files", files},

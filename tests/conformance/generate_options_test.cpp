@@ -12,6 +12,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 Words generate(const TemporaryFolder& folder, const Words& more) {
   return Words{"generate",  "core", "--robot", "roboteam_twente_v2024",          "--motor", "maxon_ecx_flat_32l_48v",
@@ -51,6 +52,24 @@ TEST(GenerateCorePeriod, OneThatItsWatchdogCannotServeIsRefused) {
     EXPECT_THAT(done.err, AllOf(HasSubstr("watchdog"), HasSubstr("expected at most 3.57 ms"))) << period;
     EXPECT_TRUE(folder.names().empty()) << period;
   }
+}
+
+TEST(GenerateCoreShadow, CountsAndLimitsNothing) {
+  const TemporaryFolder plain;
+  const TemporaryFolder shadow;
+  const ProgramRun usual = run(generate(plain, {"--json", "-"}));
+  const ProgramRun done = run(generate(shadow, {"--shadow", "--json", "-"}));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(usual.json()["shadow_mode"], false);
+  EXPECT_EQ(done.json()["shadow_mode"], true);
+  EXPECT_NE(usual.json()["config_check_sum"], done.json()["config_check_sum"]);
+  EXPECT_THAT(done.json()["notes"][0].get<std::string>(), HasSubstr("limits no current"));
+  const auto text = [](const TemporaryFolder& folder, const char* path) { return content_of(folder.path() / "core" / path); };
+  EXPECT_THAT(text(shadow, "README.md"), HasSubstr("**Shadow mode: the thermal guard limits no current"));
+  EXPECT_THAT(text(plain, "README.md"), Not(HasSubstr("Shadow mode")));
+  EXPECT_THAT(text(shadow, "core_config.h"), AllOf(HasSubstr(" --shadow"), HasSubstr(".shadow_mode = true,")));
+  // The self-test drives with a guard at its limit.
+  EXPECT_THAT(make(shadow, "host"), HasSubstr("passes its self-test"));
 }
 
 }  // namespace

@@ -159,6 +159,14 @@ TEST(CoreConfig, RobotWithoutFrictionIsDrivenWithoutItsFeedForward) {
   EXPECT_TRUE(robot_core::start(config, state, {}));
 }
 
+TEST(CoreConfig, CheckSumCoversShadowMode) {
+  const robot_core::Config usual = make_core_config(twente(), ecx_32().nominal, {});
+  const robot_core::Config shadow = make_core_config(twente(), ecx_32().nominal, {.shadow_mode = true});
+  EXPECT_FALSE(usual.shadow_mode);
+  EXPECT_TRUE(shadow.shadow_mode);
+  EXPECT_NE(usual.check_sum, shadow.check_sum);
+}
+
 TEST(CoreConfig, RefusesAPeriodThatItsWheelLoopCannotUse) {
   EXPECT_THROW(make_core_config(twente(), ecx_32().nominal, {.period_s = 0.02}), base::Failure);
 }

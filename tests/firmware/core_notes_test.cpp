@@ -80,6 +80,9 @@ TEST(CoreNotes, EveryKindHasItsSentence) {
       {StopTakesCurrent{40.0, 115.0, 40.0},
        "the robot drives with less current than the motor could carry, because one full stop heats the winding by 40 K of the 115 K "
        "between air of 40 °C and its limit; a lower limits.speed or limits.braking in the robot file helps"},
+      {ShadowModeChosen{},
+       "the guard limits no current, so a motor can overheat: --shadow only counts what it would have limited; generate the core again "
+       "without --shadow before a match"},
   };
   std::set<std::size_t> kinds;
   for (const auto& [note, words] : sentences) {

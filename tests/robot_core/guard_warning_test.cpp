@@ -1,8 +1,9 @@
-// The warning before the thermal guard limits, on a robot that is held while it pushes.
+// The warning before the thermal guard limits, and the counters of shadow mode, on a robot that is held while it pushes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "test_robot.h"
 
@@ -40,6 +41,7 @@ class HeldRobot {
     const bool is_on = std::fmod(static_cast<float>(time_s()), pulses.period_s) < pulses.on_share * pulses.period_s;
     input.command.mode = robot_core::Mode::wheel_torque;
     std::ranges::fill(input.command.wheel_torque_Nm, is_on ? pulses.current_A * config_.derived.geared_constant_V_s_per_rad : 0.0F);
+    input.elapsed_s = elapsed_s > 0.0F ? elapsed_s : config_.period_s;
     const Output out = robot_core::step(config_, state, input);
     plant_.move(out);
     plant_.set_velocity(0.0, 0.0, 0.0);
@@ -62,6 +64,7 @@ class HeldRobot {
   }
 
   State state;
+  float elapsed_s = kNone;  ///< time that the timer reports; NaN: the period
 
  private:
   [[nodiscard]] double time_s() const { return static_cast<double>(steps_) * static_cast<double>(config_.period_s); }
@@ -97,6 +100,23 @@ TEST(GuardWarning, PrecedesTheFirstLimitUnderAPulsedLoad) {
     EXPECT_GE(found.first_warning_s, 0.0);
     EXPECT_LT(found.first_warning_s, found.first_limit_s - 1.0);
   }
+}
+
+// A timer may report any gap.
+TEST(ShadowMode, CountsAStepAfterAGapOfAnyLengthAsOnePeriod) {
+  Config config = make_config(4);
+  config.shadow_mode = true;
+  robot_core::complete(config);
+  HeldRobot robot(config);
+  robot_core::start(config, robot.state, {.is_rested = true, .body_C = 154.0F});
+  const Pulses pulses{6.0F, 1.0F, 1.0F};
+  robot.push_for(pulses, 0.1);
+  const float before_A_s = robot.state.shadow_deficit_A_s;
+  ASSERT_GT(before_A_s, 0.0F);
+  robot.elapsed_s = std::numeric_limits<float>::max();
+  robot.push(pulses);
+  EXPECT_GT(robot.state.shadow_deficit_A_s, before_A_s);
+  EXPECT_LE(robot.state.shadow_deficit_A_s, before_A_s + 4.0F * config.current_limit_A * config.period_s);
 }
 
 }  // namespace

@@ -51,7 +51,9 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
 Command generate_command() {
   return {.name = {},
           .summary = "Writes the drive core with configuration and thermal guard of a robot as source files, ready to compile",
-          .example = "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core",
+          .example =
+              "heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out drive_core\n"
+              "  heatsoak generate core --robot roboteam_twente_v2024 --motor maxon_ecx_flat_32l_48v --out shadow_core --shadow",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<GenerateOptions>();
             app.add_option("what", options->what, "core: the drive core")->required()->check(CLI::IsMember({"core"}));
@@ -59,8 +61,12 @@ Command generate_command() {
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
             app.add_option("--out", options->out, "folder to write, new or empty")->required()->type_name("DIR");
             app.add_flag("--force", options->force, "replace the generated files in a folder that is not empty, keep all others");
-            add_quantity(app, "--period", options->core.period_s,
-                         {"period", "s", base::Range::between(1e-4, 0.1), "time between two control steps, at most 3.57 ms; 1 ms unless given"});
+            add_quantity(
+                app, "--period", options->core.period_s,
+                {"period", "s", base::Range::between(1e-4, 0.1), "time between two control steps, at most 3.57 ms; 1 ms unless given"});
+            app.add_flag("--shadow", options->core.shadow_mode,
+                         "shadow mode: the thermal guard counts what it would limit, but limits nothing; to see in telemetry what the "
+                         "guard would cost");
             add_derate_options(app, options->guard.derate);
             session.add_data_option(app);
             session.add_answer_options(app);

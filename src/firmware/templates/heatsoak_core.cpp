@@ -26,6 +26,7 @@ static_assert(sizeof(Output) == sizeof(heatsoak_core_output) && alignof(Output) 
 static_assert(sizeof(Command) == sizeof(heatsoak_core_command));
 static_assert(kCoreConfig.wheel_count == HEATSOAK_CORE_WHEELS && kCoreConfig.period_s == HEATSOAK_CORE_PERIOD_S);
 static_assert(0.999999F * (HEATSOAK_CORE_WATCHDOG_US * 1e-6F) <= robot_core::kWatchdog_s);
+static_assert(kCoreConfig.shadow_mode == (HEATSOAK_CORE_SHADOW_MODE == 1));
 static_assert(kCoreConfig.check_sum == HEATSOAK_CORE_CONFIG_CHECK_SUM && robot_core::kMostWheels == HEATSOAK_CORE_MOST_WHEELS);
 
 #define SAME_PLACE(c, cpp, member)                           \
@@ -69,6 +70,11 @@ void heatsoak_core_clear(heatsoak_core_input *input) {
 
 void heatsoak_core_step(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output) {
   step(kCoreConfig, state, input, output);
+}
+
+heatsoak_core_shadow heatsoak_core_read_shadow(const heatsoak_core_state *state) {
+  const State &counted = *reinterpret_cast<const State *>(state->bytes);
+  return {counted.shadow_steps, counted.shadow_deficit_A_s};
 }
 
 void heatsoak_core_step_with_planner(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output) {

@@ -29,6 +29,7 @@ extern "C" {
 #define HEATSOAK_CORE_MOST_WHEELS 4   /* size of the arrays; of a robot with three wheels the last is ignored */
 #define HEATSOAK_CORE_STATE_BYTES @STATE_BYTES@
 #define HEATSOAK_CORE_CONFIG_CHECK_SUM @CHECK_SUM@ /* CRC-32 of the values in core_config.h, for telemetry and logs */
+#define HEATSOAK_CORE_SHADOW_MODE @SHADOW@ /* 1: the thermal guard counts what it would limit, but limits nothing (--shadow) */
 
 /* A sensor that is not fitted, or has no sample: not a number. */
 #define HEATSOAK_CORE_NO_SAMPLE (__builtin_nanf(""))
@@ -115,7 +116,14 @@ void heatsoak_core_clear(heatsoak_core_input *input);
  * bridges. */
 void heatsoak_core_step(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output);
 
-/* The same with the planner of pose targets, which the linker leaves out if this is not called. It plans anew in every step: 86 000
+/* Counters of shadow mode since the last start, or the restart after a damaged state. Zeros if HEATSOAK_CORE_SHADOW_MODE is 0. */
+typedef struct heatsoak_core_shadow {
+  uint32_t steps;    /* steps in which the thermal guard would have limited the current of a wheel */
+  float deficit_A_s; /* time integral of the current that it would have taken away, sum of all wheels */
+} heatsoak_core_shadow;
+heatsoak_core_shadow heatsoak_core_read_shadow(const heatsoak_core_state *state);
+
+/* As heatsoak_core_step(), with the planner of pose targets, which the linker leaves out if this is not called. It plans anew in every step: 86 000
  * instructions on average, up to 536 000. At 216 MHz and one instruction per cycle these are 0.4 and 2.5 ms, at 16 MHz 5 and 34 ms: longer
  * than a period. A step that is late by more than two periods counts as a time jump. */
 void heatsoak_core_step_with_planner(heatsoak_core_state *state, const heatsoak_core_input *input, heatsoak_core_output *output);

@@ -130,6 +130,34 @@ void needs_a_planner_for_poses() {
   check(output.robot_reason == HEATSOAK_CORE_NONE && !all_open(output), "with the planner it is followed");
 }
 
+/// A guard at its limit allows no current. In shadow mode it counts what it would take away, and the current flows.
+void limits_or_counts() {
+  heatsoak_core_state state;
+  std::memset(&state, 0, sizeof state);
+  heatsoak_core_start(&state, false, HEATSOAK_CORE_NO_SAMPLE);
+  heatsoak_core_input input = standing();
+  heatsoak_core_output output;
+  input.command.mode = HEATSOAK_CORE_WHEEL_TORQUE;
+  float largest_V = 0.0F;
+  for (float &torque_Nm : input.command.wheel_torque_Nm) {
+    torque_Nm = 0.02F;
+  }
+  for (int i = 0; i < 20; ++i) {
+    heatsoak_core_step(&state, &input, &output);
+    for (const float voltage_V : output.voltage_V) {
+      largest_V = std::fmax(largest_V, std::fabs(voltage_V));
+    }
+  }
+  const heatsoak_core_shadow shadow = heatsoak_core_read_shadow(&state);
+#if HEATSOAK_CORE_SHADOW_MODE
+  check(shadow.steps > 0 && shadow.deficit_A_s > 0.0F, "shadow mode counts what a hot guard would limit");
+  check(largest_V > 0.01F, "shadow mode limits nothing");
+#else
+  check(shadow.steps == 0 && shadow.deficit_A_s == 0.0F, "without shadow mode nothing is counted");
+  check(largest_V < 0.01F, "a guard at its limit takes the current away");
+#endif
+}
+
 std::uint64_t digest(const heatsoak_core_state &state) {
   std::uint64_t sum = 14695981039346656037U;
   for (const unsigned char byte : state.bytes) {
@@ -169,6 +197,7 @@ int main(int count, char **words) {
   recovers_from_damage();
   restores_after_power_loss();
   needs_a_planner_for_poses();
+  limits_or_counts();
   std::printf(failures == 0 ? "the generated core passes its self-test\n" : "%d checks failed\n", failures);
   return failures == 0 ? 0 : 1;
 }
