@@ -220,7 +220,9 @@ report::Chart time_picture(const Study& study) {
   report::ChartPanel heat = panel("Hottest winding", "temperature / °C");
   heat.curves = {curve_of("no guard", seconds_of(bench, 0), &Second::winding_C, 0),
                  curve_of(kGuardOfBench, seconds_of(bench, 1), &Second::winding_C, 2),
-                 curve_of(kGuardOfFile, seconds_of(file, 1), &Second::winding_C, 1)};
+                 curve_of(kGuardOfFile, seconds_of(file, 1), &Second::winding_C, 1),
+                 curve_of("file: " + file.ways[3].name, seconds_of(file, 3), &Second::winding_C, 5),
+                 curve_of("bench: " + bench.ways[3].name, seconds_of(bench, 3), &Second::winding_C, 3)};
   heat.levels = {{fmt::format("limit {:.0f} °C", limit_C), limit_C}};
   report::ChartPanel observer = panel("Winding of the guard's observer, which adds the safety factor on heat", "temperature / °C");
   observer.curves = {curve_of("", seconds_of(bench, 1), &Second::observer_C, 2), curve_of("", seconds_of(file, 1), &Second::observer_C, 1)};
@@ -228,10 +230,10 @@ report::Chart time_picture(const Study& study) {
   report::ChartPanel allowed = panel("Allowed current of the most limited wheel; at the top grip limits, not the guard", "current / A");
   allowed.curves = {curve_of("", seconds_of(bench, 1), &Second::allowed_A, 2), curve_of("", seconds_of(file, 1), &Second::allowed_A, 1)};
   report::ChartPanel distance = panel("Distance lost against no guard", "distance / m");
-  distance.curves = {lost_m(file, 1, "", 1), lost_m(file, 3, "file: " + file.ways[3].name, 5), lost_m(bench, 1, "", 2),
-                     lost_m(bench, 3, "bench: " + bench.ways[3].name, 3)};
+  distance.curves = {lost_m(file, 1, "", 1), lost_m(file, 3, "", 5), lost_m(bench, 1, "", 2), lost_m(bench, 3, "", 3)};
   report::ChartPanel off = panel("Distance between plan and robot", "largest of a second / m");
-  off.curves = {curve_of("", seconds_of(file, 1), &Second::off_plan_m, 1), curve_of("", seconds_of(bench, 1), &Second::off_plan_m, 2)};
+  off.curves = {curve_of("", seconds_of(file, 1), &Second::off_plan_m, 1), curve_of("", seconds_of(file, 3), &Second::off_plan_m, 5),
+                curve_of("", seconds_of(bench, 1), &Second::off_plan_m, 2), curve_of("", seconds_of(bench, 3), &Second::off_plan_m, 3)};
   chart.panels = {std::move(heat), std::move(observer), std::move(allowed), std::move(distance), std::move(off)};
   return chart;
 }
