@@ -75,7 +75,7 @@ std::vector<Wiring> wrong_wirings(std::size_t wheels) {
   return wrong;
 }
 
-/// What a person at the robot sees and what telemetry shows, at the end of a step.
+/// Speeds at the end of a step, as a person at the robot sees them and as telemetry shows them.
 struct Seen {
   std::array<double, kMostWheels> turning_rad_per_s{};
   std::array<double, kMostWheels> sample_rad_per_s{};
