@@ -15,7 +15,7 @@ using robot_core::Output;
 using robot_core::Reason;
 using robot_core::State;
 
-constexpr int kPeriods = 400;
+constexpr int kRolledPeriods = 400;
 
 /// Currents of two wheels of unknown speed, of a robot with three wheels that brakes from some speed.
 struct Braking {
@@ -32,7 +32,7 @@ Braking brake(double speed_m_per_s, double way_rad) {
   Random random(3);
   EXPECT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
   Braking braking;
-  for (int k = 0; k < kPeriods; ++k) {
+  for (int k = 0; k < kRolledPeriods; ++k) {
     Input input = plant.sense(random, kNoise_rad_per_s, true);
     input.command.mode = robot_core::Mode::brake;
     if (k == 0) {
@@ -62,7 +62,7 @@ TEST(UnknownSpeed, ABridgeClosesOnlyIfTheVoltageSuitsTheSamples) {
     for (const double way_rad : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
       const Braking braking = brake(speed_m_per_s, way_rad);
       EXPECT_LE(braking.largest_A, static_cast<double>(config.limp_current_A) + margin_A) << speed_m_per_s << " m/s, " << way_rad;
-      EXPECT_EQ(braking.closed_periods, 2 * kPeriods) << speed_m_per_s << " m/s, " << way_rad;
+      EXPECT_EQ(braking.closed_periods, 2 * kRolledPeriods) << speed_m_per_s << " m/s, " << way_rad;
       EXPECT_LT(braking.speed_at_end_m_per_s, 0.8 * speed_m_per_s) << "does not brake, " << way_rad;
     }
   }
