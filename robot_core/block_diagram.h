@@ -122,7 +122,6 @@ inline constexpr SignalText kSignals[] = {
     {"Validated", "mode", "code", validate_input, control_body_velocity | feed_forward | control_wheel_speeds},
     {"Validated", "command_fault", "code", validate_input, only(make_output)},
     {"Validated", "robot_fault", "code", validate_input, run_guards | control_body_velocity | control_wheel_speeds | make_output},
-    {"State", "wheel.raw_speed_rad_per_s", "rad/s", validate_input, only(apply_limits)},
     {"State", "wheel.speed_fault", "code", validate_input, only(apply_limits)},
     {"State", "wheel.current_fault", "code", validate_input, only(apply_limits)},
     {"State", "rounded_up", "count", validate_input, only(run_guards)},

@@ -25,10 +25,11 @@ struct Validated {
   float battery_V;      ///< voltage for limits, unlikely to be above the true one
   float pwm_battery_V;  ///< voltage for the PWM ratio, unlikely to be below the true one
   float ambient_C;
-  float elapsed_s;       ///< time since the last step, a whole number of periods
-  int guard_periods;     ///< elapsed periods; one more whenever small delays add up to a period
-  PerWheel rim_m_per_s;  ///< sensed rim speed without the rotation of the robot; NaN if the sensor is not accepted
-  float spread_V;        ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: unknown
+  float elapsed_s;    ///< time since the last step, a whole number of periods
+  int guard_periods;  ///< elapsed periods; one more whenever small delays add up to a period
+  /// Sensed rim speed without the rotation of the robot; NaN if the sensor is not accepted, unless `are_samples_compared`.
+  PerWheel rim_m_per_s;
+  float spread_V;  ///< bound of the difference between estimates of one back-EMF from different sensors; infinite: unknown
   bool is_redundancy_reduced = false;  ///< true: three wheels, or a speed sensor or the gyro is not accepted
   bool is_checked = true;              ///< true: enough sensors are left for a wrong one to contradict the others
   /// True: with one spare sensor two swapped ones may go unnoticed, so until a swap is ruled out every sample may belong to each wheel.

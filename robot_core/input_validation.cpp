@@ -11,6 +11,9 @@ constexpr float kFastestYaw_rad_per_s = 60.0F;
 constexpr float kYawJump_rad_per_s = 10.0F;
 constexpr float kHottestAir_C = 120.0F;
 constexpr int kMostSameSteps = 60000;
+// A sample of a wheel with fault 117 agrees with the rest up to this rim speed plus a share of the speed that the rest implies.
+constexpr float kAgrees_m_per_s = 0.08F;
+constexpr float kAgrees_share = 0.125F;
 constexpr float kDead_s = 1.0F;  // a rejected sample that is constant for this time is not the correct one
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
@@ -273,16 +276,25 @@ bool imply_from(const Config& config, const State& state, Validated& validated, 
   return is_known;
 }
 
-/// True if a rejected sample may be the correct one: without a spare sensor and a current sensor, after fault 111 to 113, unless it stays
-/// constant.
+/// True if a rejected sample may be the correct one: without a spare sensor, after fault 111 to 113 without a current sensor, unless it
+/// stays constant, and after fault 117 of two wheels that both contradict the rest, because two wrong sensors can outvote the others. If
+/// only one is wrong, the other one soon agrees with the rest.
 bool is_rejection_doubtful(const Config& config, const State& state, const Validated& validated) {
   bool is_doubtful = false;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    const WheelState& wheel = state.wheel[i];
-    is_doubtful |= wheel.speed_fault >= code(Reason::wheel_speed_jump) && wheel.speed_fault <= code(Reason::wheel_speed_swapped) &&
-                   wheel.has_current == 0 && static_cast<float>(wheel.same_steps) * config.period_s < kDead_s;
+  int wrong = 0;
+  if (!validated.is_checked) {
+    for (int i = 0; i < config.wheel_count; ++i) {
+      const WheelState& wheel = state.wheel[i];
+      if (wheel.speed_fault == code(Reason::wheel_speed_wrong)) {
+        const float implied_rad_per_s = validated.wheel[i].speed_rad_per_s;
+        const float agrees_rad_per_s = kAgrees_m_per_s * config.wheel[i].speed_per_rim_per_m + kAgrees_share * absolute(implied_rad_per_s);
+        wrong += absolute(wheel.raw_speed_rad_per_s - implied_rad_per_s) > agrees_rad_per_s ? 1 : 0;
+      }
+      is_doubtful |= wheel.speed_fault >= code(Reason::wheel_speed_jump) && wheel.speed_fault <= code(Reason::wheel_speed_swapped) &&
+                     wheel.has_current == 0 && static_cast<float>(wheel.same_steps) * config.period_s < kDead_s;
+    }
   }
-  return is_doubtful && !validated.is_checked;
+  return is_doubtful || wrong > 1;
 }
 
 /// Calculates speeds and body velocity from the remaining sensors if some are missing.
@@ -322,8 +334,7 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
   validated.are_samples_compared = !is_known || is_rejection_doubtful(config, state, validated);
   if (validated.are_samples_compared) {
     PlaneFit all;
-    PerWheel rim_m_per_s;
-    imply_from(config, state, validated, true, all, rim_m_per_s);
+    imply_from(config, state, validated, true, all, validated.rim_m_per_s);
   }
 }
 

@@ -108,10 +108,9 @@ float reachable_current_A(const Config& config, const WheelDemand& demand, float
   const float band_V = config.lowest_resistance_ohm * demand.most_A;
   // Without a spare sensor a single set of sensors determines each speed, and all samples do if a rejected one may be correct.
   const ValidatedWheel& sensed = validated.wheel[i];
-  SpeedRange range =
-      validated.is_checked ? speed_range(config, state, validated, i) : SpeedRange{sensed.speed_rad_per_s, sensed.speed_rad_per_s};
+  SpeedRange range = validated.is_checked || validated.are_samples_compared ? speed_range(config, state, validated, i)
+                                                                            : SpeedRange{sensed.speed_rad_per_s, sensed.speed_rad_per_s};
   if (validated.are_samples_compared) {
-    range.add(state.wheel[i].raw_speed_rad_per_s);
     range.add(sensed.implied_rad_per_s);
   }
   if (validated.common_reason != Reason::none) {

@@ -84,9 +84,11 @@
 //     other wheels with the gyro, and from three other wheels. With four wheel sensors and a gyro, any two may be wrong without a higher
 //     current while the wheels roll. With one sensor less (three wheels, or after a fault) one may be wrong. Swapped wheel sensors are then
 //     assumed until driving has ruled them out (kConfirmations). The search for fault 113 also ends there. Without a spare sensor every
-//     current is limited to limp_current_A (limit 17).
+//     current is limited to limp_current_A (limit 17). If two wheels have fault 117 and both contradict the rest, the correct samples may be
+//     the rejected ones. All samples then count: a bridge opens unless one voltage keeps the limp current for every sufficient set of them.
 //   - The bridge opens if no voltage keeps the limit by the current sensor and by the speeds, or if the sensed current is far above it
-//     (code 16 or 18). The other wheels are not scaled then, because the robot must still drive home.
+//     (code 16 or 18). The other wheels are not scaled then, because the robot must still
+//     drive home.
 //   - If sensed current or slip hold one wheel back, all are scaled from the next period on, so that the direction of travel is kept: to a
 //     quarter at least, because the sensor of that wheel may be wrong.
 //   - A command fault (104 to 106) opens the bridges, because braking takes more current than rolling. A robot that must brake gets
@@ -121,6 +123,8 @@
 //   - Three wheels with a dead current sensor, pushed: fault 113 comes more often (13 of 25 robots instead of 3) and with it currents above
 //     1.3 times the limit. The guard was at most 3 K too cold with pushes below the grip, 11 K if all current sensors are dead as well.
 //   - A current sensor that lies slightly above the limit makes a robot creep that should stand: up to 0.6 m in 3 s, within the limit.
+//   - Two wheel sensors with three to ten times the speed, for example in turns per minute, while fewer than two are rejected (117) or one
+//     agrees by chance: up to 7 A above the limit, for 0.5 s in 32 minutes of a wheel.
 //   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
 //   - A wheel that carries less than a third of its load slides so often that it can get fault 117, and recovers only now and then: with a
 //     tenth of its load the robot loses up to 40 % of its speed.

@@ -50,10 +50,12 @@ double area(const Config& config, int i, int j, int k) { return sine(config, i, 
 Range searched(const Config& config, const State& state, const Validated& validated, int i) {
   constexpr auto kLeast = static_cast<double>(robot_core::kLeastArea_ratio);
   const double turning = static_cast<double>(config.contact_radius_m) * static_cast<double>(validated.velocity.yaw);
-  const auto rim = [&](int j) {
-    return static_cast<double>(validated.wheel[j].speed_rad_per_s) * static_cast<double>(config.wheel[j].rim_per_speed_m);
+  // If too few sensors are accepted, rejected samples count, too.
+  const auto speed = [&](int j) {
+    return validated.are_samples_compared ? state.wheel[j].raw_speed_rad_per_s : validated.wheel[j].speed_rad_per_s;
   };
-  const auto sensed = [&](int j) { return validated.wheel[j].is_speed_sensed; };
+  const auto rim = [&](int j) { return static_cast<double>(speed(j)) * static_cast<double>(config.wheel[j].rim_per_speed_m); };
+  const auto sensed = [&](int j) { return validated.wheel[j].is_speed_sensed || validated.are_samples_compared; };
   const double per_rim = 1.0 / static_cast<double>(config.wheel[i].rim_per_speed_m);
   Range range;
   if (sensed(i)) {
@@ -74,8 +76,7 @@ Range searched(const Config& config, const State& state, const Validated& valida
   }
   for (int other = 0; other < config.wheel_count && validated.is_any_possible && range.slowest <= range.fastest; ++other) {
     if (sensed(other)) {
-      range.add(static_cast<double>(validated.wheel[other].speed_rad_per_s) * static_cast<double>(config.wheel[other].rim_per_speed_m) *
-                per_rim);
+      range.add(rim(other) * per_rim);
     }
   }
   return range;

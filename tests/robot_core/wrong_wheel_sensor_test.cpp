@@ -26,7 +26,7 @@ using Lie = std::function<float(float, float)>;
 /// The thresholds of the core were chosen with the drives 9000 to 9039.
 constexpr unsigned kFirstSeed = 5000;
 constexpr int kDrives = 40;
-constexpr int kPeriods = 12000;
+constexpr int kDrivePeriods = 12000;
 
 /// Rival of fault 117: rejects a wheel whose speed differs most, and for `hold_s` without a break by more than kLeast_m_per_s, from the
 /// least-squares motion of the other three.
@@ -97,7 +97,7 @@ Score drive_all(const Lie& lie, bool are_currents_fitted, float push_N) {
     int until_push = 0, first = -1;
     PlainThreshold quick(0.5);
     PlainThreshold slow(1.0);
-    for (int k = 0; k < kPeriods; ++k) {
+    for (int k = 0; k < kDrivePeriods; ++k) {
       const robot_core::Vector3& velocity = command.next(random);
       if (push_N > 0.0F && --until_push <= 0) {
         until_push = 100 + random.below(900);
