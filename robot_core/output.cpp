@@ -35,14 +35,18 @@ void make_output(const Config& config, const State& state, const Validated& vali
     out.winding_C[i] = reported_C(config, guard.state_C[0]);
     const auto of_guard = __builtin_bit_cast(std::uint32_t, guard.time_to_limit_s);
     time_to_limit = of_guard < time_to_limit ? of_guard : time_to_limit;
-    // An estimate is up to 0.13 s old, and a current can rise faster.
-    time_to_limit = wheel.reason == Reason::guard ? 0 : time_to_limit;
   }
   for (int i = config.wheel_count; i < kMostWheels; ++i) {
     out.voltage_V[i] = out.pwm_ratio[i] = out.allowed_current_A[i] = out.winding_C[i] = 0.0F;
     out.reason[i] = Reason::none;
     out.is_open[i] = true;
   }
+  // An estimate is up to 0.13 s old, and a current can rise faster: 0 if any byte of the reasons is that of the guard.
+  std::uint32_t reasons = 0;
+  static_assert(sizeof(out.reason) == sizeof(reasons));
+  __builtin_memcpy(&reasons, out.reason, sizeof(reasons));
+  reasons ^= 0x01010101U * static_cast<std::uint32_t>(Reason::guard);
+  time_to_limit = ((reasons - 0x01010101U) & ~reasons & 0x80808080U) != 0 ? 0 : time_to_limit;
   out.time_to_guard_limit_s = config.guard == nullptr ? kLongTime_s : __builtin_bit_cast(float, time_to_limit);
   out.is_warning = out.time_to_guard_limit_s < config.warning_time_s;
   out.robot_reason = validated.robot_fault != Reason::none ? validated.robot_fault : validated.command_fault;
