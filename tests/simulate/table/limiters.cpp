@@ -116,6 +116,9 @@ std::unique_ptr<Limiter> Limiter::i_squared_t(const derate::Derating& exact, dou
   made->continuous_squared_A2_ = static_cast<float>(overload.continuous_A * overload.continuous_A);
   made->fill_per_A2_s_ = kFull / static_cast<float>(overload.budget_A2_s());
   made->model_.node_count = 3;
+  // No study restores a limiter. The core demands resting temperatures that are not below the hottest air.
+  made->model_.resting_C[2] = made->model_.resting_C[1];
+  made->model_.resting_C[1] = made->model_.hottest_ambient_C;
   made->model_.rates = &Limiter::overload_rates;
   made->model_.context = made.get();
   return made;
