@@ -47,7 +47,7 @@ std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, std::sp
     } else if (!estimation::has_signal(recording, thermal::Signal::speed)) {
       std::erase(here.needed, thermal::Signal::speed);
     }
-    need_signals_of_effects(setup.motor, setup.heat, recording, here);
+    need_signals_of_effects(setup.motor, recording, here);
     if (std::optional<estimation::MeasuredRuns> found = failures.attempt([&] { return estimation::measured_runs(recording, here); })) {
       std::ranges::move(found->runs, std::back_inserter(all));
       std::ranges::move(found->notes, std::back_inserter(notes));
@@ -74,7 +74,7 @@ class Calibrating {
     if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(how.columns, recordings_)) {
       all_.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
     }
-    std::ranges::move(effect_signals(needs_of(motor, setup_.heat), recordings_, how.torque).missing, std::back_inserter(all_.findings));
+    std::ranges::move(missing_signals(motor, recordings_, how), std::back_inserter(all_.findings));
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
     std::vector<estimation::RunNote> notes;

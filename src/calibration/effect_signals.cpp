@@ -4,43 +4,35 @@
 #include <set>
 
 namespace heatsoak::calibration {
-namespace {
-
-std::vector<thermal::Signal> without_copper_loss(std::vector<thermal::Signal> signals, HeatInput heat) {
-  if (heat == HeatInput::input_power) {
-    std::erase(signals, thermal::Signal::current);
-  }
-  return signals;
-}
-
-}  // namespace
-
-std::vector<EffectNeeds> needs_of(const estimation::Model& model, HeatInput heat) {
+std::vector<EffectNeeds> needs_of(const estimation::Model& model) {
   std::vector<EffectNeeds> all;
   for (const thermal::EffectInPlace& effect : model.network.effects()) {
     std::vector<double> values;
     for (const int place : effect.parameter_index) {
       values.push_back(model.values[static_cast<std::size_t>(place)]);
     }
-    all.push_back({effect.name, without_copper_loss(effect.type->needed_with(values), heat)});
+    all.push_back({effect.name, effect.type->needed_with(values)});
   }
   return all;
 }
 
-std::vector<EffectNeeds> needs_of(const motor::Motor& motor, HeatInput heat) {
+std::vector<EffectNeeds> needs_of(const motor::Motor& motor) {
   std::vector<EffectNeeds> all;
   for (const motor::MotorEffect& effect : motor.effects) {
-    all.push_back({effect.name, without_copper_loss(effect.type->needed_with(effect.values()), heat)});
+    all.push_back({effect.name, effect.type->needed_with(effect.values())});
   }
   return all;
 }
 
 EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const recording::Recording> recordings,
-                             const estimation::ShaftTorque& torque) {
+                             const estimation::MeasuredRunOptions& how) {
   std::set<thermal::Signal> logged;
   for (const recording::Recording& each : recordings) {
-    const std::vector<thermal::Signal> signals = estimation::signals_of(each, torque);
+    const std::vector<thermal::Signal> signals = estimation::signals_of(each, how.torque);
     logged.insert(signals.begin(), signals.end());
+  }
+  if (how.is_heat_input_power) {
+    logged.erase(thermal::Signal::current);
   }
   std::set<thermal::Signal> found;
   EffectSignals all;
@@ -61,14 +53,29 @@ EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const
   return all;
 }
 
-void need_signals_of_effects(const motor::Motor& motor, HeatInput heat, const recording::Recording& recording,
-                             estimation::MeasuredRunOptions& how) {
-  const std::vector<EffectNeeds> needs = needs_of(motor, heat);
-  for (const thermal::Signal signal : effect_signals(needs, {&recording, 1}, how.torque).found) {
+void need_signals_of_effects(const motor::Motor& motor, const recording::Recording& recording, estimation::MeasuredRunOptions& how) {
+  for (const thermal::Signal signal : effect_signals(needs_of(motor), {&recording, 1}, how).found) {
     if (std::ranges::find(how.needed, signal) == how.needed.end()) {
       how.needed.push_back(signal);
     }
   }
+}
+
+std::vector<SignalsMissing> missing_signals(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                                            const estimation::MeasuredRunOptions& how) {
+  const std::vector<EffectNeeds> needs = needs_of(motor);
+  std::vector<SignalsMissing> all = effect_signals(needs, recordings, how).missing;
+  const std::size_t in_none = all.size();
+  for (const recording::Recording& recording : recordings) {
+    for (SignalsMissing& each : effect_signals(needs, {&recording, 1}, how).missing) {
+      const auto is_known = [&](const SignalsMissing& known) { return known.effect == each.effect && known.signals == each.signals; };
+      if (std::none_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(in_none), is_known)) {
+        each.recording = recording.name;
+        all.push_back(std::move(each));
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace heatsoak::calibration

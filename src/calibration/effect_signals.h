@@ -17,23 +17,24 @@ struct EffectNeeds {
   std::vector<thermal::Signal> signals;
 };
 
-/// Returns the needs of all effects of the network. If the input power is the heat, no effect needs the current, because the input power
-/// contains the copper loss.
-std::vector<EffectNeeds> needs_of(const estimation::Model& model, HeatInput heat);
-/// Returns the needs of the effects that the motor file has in addition to the network of every motor; `heat` as above.
-std::vector<EffectNeeds> needs_of(const motor::Motor& motor, HeatInput heat);
+/// Returns the needs of all effects of the network.
+std::vector<EffectNeeds> needs_of(const estimation::Model& model);
+/// Returns the needs of the effects that the motor file has in addition to the network of every motor.
+std::vector<EffectNeeds> needs_of(const motor::Motor& motor);
 
 struct EffectSignals {
   std::vector<thermal::Signal> found;   ///< signals that an effect depends on and at least one recording has
   std::vector<SignalsMissing> missing;  ///< effects, each with the signals that no recording has
 };
 
-/// `torque`: constants from which signals may follow, see estimation::signals_of().
+/// `how`: options that the logs are read with; if the input power is the heat, no current counts as logged.
 EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const recording::Recording> recordings,
-                             const estimation::ShaftTorque& torque);
+                             const estimation::MeasuredRunOptions& how);
 
 /// Adds to how.needed the signals of the file's effects that the recording has, so that rows without a value count as gaps, not as 0.
-void need_signals_of_effects(const motor::Motor& motor, HeatInput heat, const recording::Recording& recording,
-                             estimation::MeasuredRunOptions& how);
+void need_signals_of_effects(const motor::Motor& motor, const recording::Recording& recording, estimation::MeasuredRunOptions& how);
+/// Returns, per recording, the effects of the file whose signals it lacks; without a name of a recording if no recording has them.
+std::vector<SignalsMissing> missing_signals(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                                            const estimation::MeasuredRunOptions& how);
 
 }  // namespace heatsoak::calibration

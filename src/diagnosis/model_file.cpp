@@ -25,16 +25,18 @@ NoHeatInput::NoHeatInput(const std::string& motor) : base::Failure(base::ExitCod
 namespace {
 
 /// Sets the signals that the logs must have, and adds a finding for each effect whose signals no log has.
-void set_needed(ModelOfLogs& out, const motor::Motor& motor, calibration::HeatInput heat,
-                const std::vector<recording::Recording>& recordings) {
-  const std::vector<calibration::EffectNeeds> needs = calibration::needs_of(out.model, heat);
-  calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, out.how.torque);
+void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
+  const std::vector<calibration::EffectNeeds> needs = calibration::needs_of(out.model);
+  // Hold-out runs and the band are predicted from the current of each log that has one, so logs with and without one do not mix.
+  calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, {.torque = out.how.torque});
   const bool has_heat = std::ranges::any_of(
       signals.found, [](thermal::Signal each) { return each == thermal::Signal::current || each == thermal::Signal::input_power; });
   if (!has_heat) {
     throw NoHeatInput(motor.id);
   }
   out.how.needed = std::move(signals.found);
+  out.how.is_heat_input_power =
+      out.how.is_heat_input_power && std::ranges::find(out.how.needed, thermal::Signal::current) == out.how.needed.end();
   std::ranges::move(signals.missing, std::back_inserter(out.findings));
 }
 
@@ -234,7 +236,7 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(out.how.columns, recordings)) {
     out.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
   }
-  set_needed(out, motor, built.heat, recordings);
+  set_needed(out, motor, recordings);
   const bool has_torque = have(thermal::Signal::shaft_power);
   if (!has_torque && std::ranges::all_of(recordings, [&](const recording::Recording& each) {
         return estimation::has_signal(each, thermal::Signal::shaft_power, out.how.torque);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "base/unknown.h"
 #include "estimation/thresholds.h"
@@ -35,10 +37,9 @@ const std::vector<double>* values(std::string_view key, const recording::Recordi
   const recording::Channel* const channel = recording.find(key);
   return has_values(channel) ? &channel->values : nullptr;
 }
-/// Fills gaps shorter than `slow_s` by linear interpolation, at the ends by the nearest value. Air and coolant change slowly enough for
-/// that.
-std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s) {
-  const double slow_s = thresholds().slow_s;
+/// Fills gaps shorter than `slow_s` by linear interpolation, at the ends by the nearest value. Temperatures of the surroundings and signals
+/// that heat nothing by themselves change slowly enough for that, or are logged less often.
+std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s, double slow_s = thresholds().slow_s) {
   std::vector<double> all = values ? *values : std::vector<double>();
   std::size_t last = all.size();
   for (std::size_t row = 0; row < all.size(); ++row) {
@@ -85,6 +86,13 @@ LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions
   for (std::size_t i = 0; i < thermal::kQuantityCount; ++i) {
     const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[i];
     columns_[i] = each.from == thermal::FromColumn::computed ? nullptr : values(each.column, recording);
+    const std::optional<recording::Quantity> known = recording::quantity_named(each.column);
+    if (columns_[i] != nullptr && (!known || known->kind != recording::QuantityKind::heat_input)) {
+      // The age grows by the time of the log, whatever part of it was logged.
+      const double slow_s = each.signal == thermal::Signal::age ? std::numeric_limits<double>::infinity() : thresholds().slow_s;
+      bridged_[i] = bridged(columns_[i], recording.time_s, slow_s);
+      columns_[i] = &bridged_[i];
+    }
   }
 }
 

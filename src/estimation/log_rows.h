@@ -27,6 +27,8 @@ double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal si
 class LogRows {
  public:
   LogRows(const recording::Recording& recording, const MeasuredRunOptions& options);
+  LogRows(const LogRows&) = delete;  // columns_ points into bridged_
+  LogRows& operator=(const LogRows&) = delete;
   [[nodiscard]] thermal::OperatingPoint<double> at(std::size_t row) const;
   /// True if the row has the temperature of the surroundings and all signals that the options need.
   [[nodiscard]] bool is_known(std::size_t row) const;
@@ -43,6 +45,7 @@ class LogRows {
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_;
   /// Columns in the order of the table of quantities; null if the log lacks one, or if the quantity is computed.
   std::array<const std::vector<double>*, thermal::kQuantityCount> columns_{};
+  std::array<std::vector<double>, thermal::kQuantityCount> bridged_{};  ///< columns that are no heat input, with short gaps filled
   std::vector<double> surroundings_C_;
   bool is_signed_;  ///< current and speed both have negative values
   bool is_driven_;  ///< the current exceeds least_current_A at any time

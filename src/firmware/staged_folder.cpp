@@ -72,7 +72,8 @@ void check_replaced_files(const fs::path& folder, std::span<const CoreFile> file
   }
 }
 
-/// Copies the files that a user added. Generated files of an older version stay behind.
+/// Copies the files that a user added, with their times, so that `make` sees that old objects are older than new sources. Generated files
+/// of an older version stay behind.
 void copy_others(const fs::path& from, const fs::path& to) {
   const std::set<std::string> generated = generated_before(from);
   std::error_code problem;
@@ -82,6 +83,9 @@ void copy_others(const fs::path& from, const fs::path& to) {
       fs::create_directories(to / path, problem);
     } else if (!generated.contains(path.generic_string())) {
       fs::copy(at->path(), to / path, fs::copy_options::copy_symlinks | fs::copy_options::skip_existing, problem);
+      if (!problem && fs::is_regular_file(at->symlink_status())) {
+        fs::last_write_time(to / path, fs::last_write_time(at->path(), problem), problem);
+      }
     }
     if (problem) {
       break;

@@ -8,6 +8,7 @@
 
 #include "estimation/log_rows.h"
 #include "estimation/measured_run.h"
+#include "estimation/thresholds.h"
 #include "recording/quantities.h"
 #include "thermal/operating_point.h"
 
@@ -99,7 +100,7 @@ TEST(SignalTable, OptionalQuantitiesAreUnknownWhereTheLogHasNoValue) {
     }
     recording::Recording log;
     log.name = "log";
-    log.time_s = {0.0, 1.0};
+    log.time_s = {0.0, 2.0 * thresholds().slow_s};  // farther apart than gaps that are filled
     log.run_begins = {0};
     log.channels.push_back({*recording::quantity_named(each.column), {std::numeric_limits<double>::quiet_NaN(), 4.0}});
     const MeasuredRunOptions options{.ambient_C = 25.0};

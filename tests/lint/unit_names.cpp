@@ -60,7 +60,7 @@ const std::set<std::string, std::less<>> kUnitBeside{// values, ranges and toler
                                                      // distributions: the variable of that type has the unit
                                                      "nominal", "p05", "p50", "p95",
                                                      // columns of logs: the log has the unit
-                                                     "first_column", "second_column", "third_column",
+                                                     "first_column", "second_column", "third_column", "bridged",
                                                      // charts: the axis label has the unit; ODEs: the system has it
                                                      "x", "y", "dydt", "event_values", "written",
                                                      // mixed units, place by place

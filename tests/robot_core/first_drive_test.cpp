@@ -80,7 +80,7 @@ struct Seen {
   std::array<double, kMostWheels> turning_rad_per_s{};
   std::array<double, kMostWheels> sample_rad_per_s{};
 
-  /// Only this wheel turns, counter-clockwise, and the samples show the same.
+  /// Only this wheel turns, in the positive direction, and the samples show the same.
   [[nodiscard]] bool is_only(std::size_t wheel) const {
     constexpr double kStill_rad_per_s = 0.5;
     bool is = true;

@@ -95,8 +95,7 @@ void predict_one(const motor::Motor& motor, const recording::Recording& recordin
   std::vector<estimation::RunNote> notes;
   std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, notes);
   std::ranges::move(notes, std::back_inserter(all.notes));
-  const std::vector<EffectNeeds> needs = needs_of(motor, setup.heat);
-  for (SignalsMissing& each : effect_signals(needs, own, how_to_read(motor, setup.heat).torque).missing) {
+  for (SignalsMissing& each : missing_signals(motor, own, how_to_read(motor, setup.heat))) {
     each.recording = recording.name;
     all.missing.push_back(std::move(each));
   }
@@ -142,7 +141,7 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
     if (setup.heat != HeatInput::input_power && estimation::has_signal(recording, thermal::Signal::speed)) {
       here.needed.push_back(thermal::Signal::speed);
     }
-    need_signals_of_effects(setup.motor, setup.heat, recording, here);
+    need_signals_of_effects(setup.motor, recording, here);
     estimation::MeasuredRuns found = estimation::measured_runs(recording, here);
     std::ranges::move(found.runs, std::back_inserter(all));
     std::ranges::move(found.notes, std::back_inserter(notes));

@@ -18,7 +18,7 @@ void board_wait_for_period(void);
 uint32_t board_time_us(void);
 
 /* Samples as close to the beginning of the period as possible; HEATSOAK_CORE_NO_SAMPLE for a sensor that is not fitted or has failed.
- * speed: difference of the encoder's count over one period, or the driver's Hall speed; at the wheel, counter-clockwise as seen from
+ * speed: difference of the encoder's count over one period, or the driver's Hall speed; at the wheel, clockwise as seen from
  *        outside the robot.
  * current: of the bridge's shunt amplifier, mean over the PWM period, as torque-producing (equivalent DC) current. */
 float board_wheel_speed_rad_per_s(int wheel);
