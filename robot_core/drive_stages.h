@@ -135,6 +135,9 @@ inline float cross(const WheelConfig& a, const WheelConfig& b) {
   return a.rolling_x_share * b.rolling_y_share - a.rolling_y_share * b.rolling_x_share;
 }
 
+/// A relative error of a wheel speed up to this share is within slip and noise.
+inline constexpr float kSlipAndNoise_share = 0.125F;
+
 /// Parts of a period in which State::rounded_up counts.
 inline constexpr float kPeriodParts_ratio = 1024.0F;
 

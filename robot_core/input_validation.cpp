@@ -11,9 +11,8 @@ constexpr float kFastestYaw_rad_per_s = 60.0F;
 constexpr float kYawJump_rad_per_s = 10.0F;
 constexpr float kHottestAir_C = 120.0F;
 constexpr int kMostSameSteps = 60000;
-// A sample of a wheel with fault 117 agrees with the rest up to this rim speed plus a share of the speed that the rest implies.
+// A sample of a wheel with fault 117 agrees with the rest up to this rim speed plus kSlipAndNoise_share.
 constexpr float kAgrees_m_per_s = 0.08F;
-constexpr float kAgrees_share = 0.125F;
 constexpr float kDead_s = 1.0F;  // a rejected sample that is constant for this time is not the correct one
 
 constexpr std::uint8_t code(Reason reason) { return static_cast<std::uint8_t>(reason); }
@@ -287,7 +286,8 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
       const WheelState& wheel = state.wheel[i];
       if (wheel.speed_fault == code(Reason::wheel_speed_wrong)) {
         const float implied_rad_per_s = validated.wheel[i].speed_rad_per_s;
-        const float agrees_rad_per_s = kAgrees_m_per_s * config.wheel[i].speed_per_rim_per_m + kAgrees_share * absolute(implied_rad_per_s);
+        const float agrees_rad_per_s =
+            kAgrees_m_per_s * config.wheel[i].speed_per_rim_per_m + kSlipAndNoise_share * absolute(implied_rad_per_s);
         wrong += absolute(wheel.raw_speed_rad_per_s - implied_rad_per_s) > agrees_rad_per_s ? 1 : 0;
       }
       is_doubtful |= wheel.speed_fault >= code(Reason::wheel_speed_jump) && wheel.speed_fault <= code(Reason::wheel_speed_swapped) &&

@@ -20,7 +20,7 @@ constexpr float kWrong_m_per_s = 0.0625F;
 constexpr float kWrong_share = 0.0625F;
 constexpr float kAlone_share = 0.875F;  // smallest share of the residual that one wrong sensor explains
 // A wrong sensor recovers while the implied speed exceeds this multiple of its error plus this share of the threshold.
-constexpr float kRecovery_ratio = 8.0F;
+constexpr float kRecovery_ratio = 1.0F / kSlipAndNoise_share;
 constexpr float kTurning_share = 0.125F;
 constexpr float kYawDisagreement_rad_per_s = 2.0F;
 // Upper bound of winding resistance over coldest resistance: 2 is copper at 280 degC.

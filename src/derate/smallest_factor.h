@@ -48,8 +48,8 @@ struct FactorGrid {
 };
 
 /// Returns the smallest factor of the grid that `check(factor)`, which returns a TriedFactor, accepts; nothing if it rejects the last one.
-/// The result itself was accepted. Assumes that with a factor every larger one is accepted, too, so the expected factors change the number
-/// of checks, not the result. No factor above the first accepted step is checked.
+/// The result itself was accepted. The search assumes that every factor above an accepted one is accepted, too. Then the expected factors
+/// change only the number of checks. No factor above the first accepted step is checked.
 template <class CheckFactor>
 std::optional<double> smallest_factor(const FactorGrid& grid, const CheckFactor& check) {
   constexpr int kMostExpected = 4;                                      // if these do not lead to the result, bisection takes fewer checks

@@ -28,15 +28,14 @@ namespace {
 void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
   const std::vector<calibration::EffectNeeds> needs = calibration::needs_of(out.model);
   // Hold-out runs and the band are predicted from the current of each log that has one, so logs with and without one do not mix.
-  calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, {.torque = out.how.torque});
+  out.how.is_heat_input_power = false;
+  calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, out.how);
   const bool has_heat = std::ranges::any_of(
       signals.found, [](thermal::Signal each) { return each == thermal::Signal::current || each == thermal::Signal::input_power; });
   if (!has_heat) {
     throw NoHeatInput(motor.id);
   }
   out.how.needed = std::move(signals.found);
-  out.how.is_heat_input_power =
-      out.how.is_heat_input_power && std::ranges::find(out.how.needed, thermal::Signal::current) == out.how.needed.end();
   std::ranges::move(signals.missing, std::back_inserter(out.findings));
 }
 

@@ -37,8 +37,8 @@ const std::vector<double>* values(std::string_view key, const recording::Recordi
   const recording::Channel* const channel = recording.find(key);
   return has_values(channel) ? &channel->values : nullptr;
 }
-/// Fills gaps shorter than `slow_s` by linear interpolation, at the ends by the nearest value. Temperatures of the surroundings and signals
-/// that heat nothing by themselves change slowly enough for that, or are logged less often.
+/// Fills gaps shorter than `slow_s` by linear interpolation, at the ends by the nearest value. Used for temperatures of the surroundings
+/// and for signals other than heat inputs: they change slowly or are logged less often.
 std::vector<double> bridged(const std::vector<double>* values, const std::vector<double>& time_s, double slow_s = thresholds().slow_s) {
   std::vector<double> all = values ? *values : std::vector<double>();
   std::size_t last = all.size();

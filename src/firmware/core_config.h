@@ -24,9 +24,9 @@ struct CoreOptions {
 /// tolerance if the file declares none.
 CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor);
 
-/// Returns the configuration without a guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and the rotor inertia of the
-/// motor; [friction] may be missing as a whole (notes_on() reports it). Throws Failure (bad_input) that names all parameters that
-/// are missing, or the longest possible period if it is too long for the wheel-speed loop (wheel_loop.h).
+/// Returns the configuration without a guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and
+/// the rotor inertia of the motor; [friction] may be missing as a whole (notes_on() reports it). Throws Failure (bad_input) that names all
+/// parameters that are missing, or the longest possible period if it is too long for the wheel-speed loop (wheel_loop.h).
 ///
 ///   resistance          R25·k + R_driver, k = 0.75·1.1² for a sinusoidal current, as the plant has it (make_electrics())
 ///   lowest resistance   the same with R25·lowest_resistance_ratio·(1 + α·(coldest air − 25 °C))
@@ -43,8 +43,9 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
 /// Throws Failure (bad_input) with every value that robot and motors lack for the drive core and its simulation.
 void require_drive_values(const robot::Robot& robot, std::span<const motor::Motor> motors);
 
-/// Returns the configuration with the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from the motor's tolerance and
-/// the derating's coldest air. Throws Failure (bad_input) as above, and if the guard period is not a whole number of control periods.
+/// Returns the configuration with the guard; `guard` must be of that derating and outlive the Config. The lowest resistance follows from
+/// the motor's tolerance and the derating's coldest air. Throws Failure (bad_input) as above, and if the guard period is not a whole number
+/// of control periods.
 robot_core::Config make_core_config(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
                                     const derate::Derating& derating, const HostGuard& guard);
 
@@ -53,8 +54,8 @@ robot_core::Config make_core_config(const robot::Robot& robot, const motor::Moto
 void require_driving_current(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
                              const robot_core::Config& config);
 
-/// Heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's dT_w/dt,
-/// where every body and the air are at the winding's limit. The result is an adiabatic heating, ∫I²·R(T_limit) dt·(safety factor on
+/// Returns the heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's
+/// dT_w/dt. All bodies and the air have the winding's limit. The result is an adiabatic heating, ∫I²·R(T_limit) dt·(safety factor on
 /// heat)/C_w, plus the heat of the motor file's effects. I is that of the wheel and direction of travel with the largest force; friction,
 /// drag and gear losses are neglected, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
 /// Needs the tables that make_core_config() needs.

@@ -72,8 +72,8 @@ void check_replaced_files(const fs::path& folder, std::span<const CoreFile> file
   }
 }
 
-/// Copies the files that a user added, with their times, so that `make` sees that old objects are older than new sources. Generated files
-/// of an older version stay behind.
+/// Copies the files that a user added, but no generated file of an older version. The files keep their times, so that `make` sees that old
+/// objects are older than new sources.
 void copy_others(const fs::path& from, const fs::path& to) {
   const std::set<std::string> generated = generated_before(from);
   std::error_code problem;
