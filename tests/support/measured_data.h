@@ -25,7 +25,7 @@ inline std::optional<std::filesystem::path> measured_data(const std::string& fol
   return std::nullopt;
 }
 
-/// Returns why measured_data(folder) found nothing. The skip fails in CI if the machine has recordings or a variable promises them.
+/// Returns why measured_data(folder) found nothing. A skip for this reason fails in CI, which has to provide the recordings.
 inline std::string why_no_measured_data(const std::string& folder = "") {
   const std::string wanted = folder.empty() ? "recordings" : "recordings of " + folder;
   if (const char* given = std::getenv("HEATSOAK_MEASURED_DATA")) {
@@ -34,7 +34,7 @@ inline std::string why_no_measured_data(const std::string& folder = "") {
   if (const std::optional<std::filesystem::path> found = measured_data()) {
     return HEATSOAK_FAILS_CI + found->string() + " has no " + wanted;
   }
-  return "no " + wanted + ": HEATSOAK_MEASURED_DATA is not set, and no folder above the sources has shared/data";
+  return HEATSOAK_FAILS_CI "no " + wanted + ": HEATSOAK_MEASURED_DATA is not set, and no folder above the sources has shared/data";
 }
 
 /// Skips the test if the recordings of a folder (all if empty) are not available.
