@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 7> kBySignal{"coverage_90",          "err
 
 constexpr std::string_view kInterval = "ci95";
 
-constexpr std::array<std::string_view, 1> kNullIsNever{"time_to_limit_s"};
+constexpr std::array<std::string_view, 3> kNullIsNever{"time_to_limit_s", "rest_half_s", "rest_all_s"};
 
 struct Child {
   std::string name;

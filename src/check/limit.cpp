@@ -139,7 +139,7 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
   const double room = margin_share * std::max({std::abs(measured.value - measured.origin_value), type.least_distance_value,
                                                measured.interval_width_value, type.unit == "degC" ? kLeastRise_K : 0.0});
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
-  const double step = step_of(limit - in_unit(measured.origin_value, type.unit, unit));
+  const double step = type.is_whole ? 1.0 : step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
   const double rounded = rounded_away(limit, step, is_up);
   std::string text = text_of(std::min(rounded, most));

@@ -19,7 +19,7 @@ namespace heatsoak::check {
 namespace {
 
 /// A percentage is a pure number that is shown in percent.
-void set_type(Limit& limit, std::string name, std::string unit, Bound direction, bool is_share) {
+void set_type(Limit& limit, std::string name, std::string unit, Bound direction, bool is_share, bool is_whole = false) {
   const auto own = std::make_shared<NumberType>();
   own->name = std::move(name);
   own->unit = std::move(unit);
@@ -27,6 +27,7 @@ void set_type(Limit& limit, std::string name, std::string unit, Bound direction,
   own->type.name = own->name;
   own->type.unit = own->unit;
   own->type.is_share = is_share;
+  own->type.is_whole = is_whole;
   own->type.direction = direction;
   own->type.example = own->example;
   if (own->unit == "degC") {
@@ -73,11 +74,10 @@ void require_share(const Limit& limit, const std::vector<AnswerNumber>& numbers)
   const auto count = std::ranges::find(numbers, true, &AnswerNumber::is_whole);
   if (limit.type->is_share && count != numbers.end()) {
     const std::string_view words = to_string(limit.type->direction);
-    throw base::bad_input(
-        limit.at, count->name,
-        fmt::format("\"{}\" is a percentage, but the number is a whole one, {:.0f}; expected {} and a number without unit, "
-                    "such as \"{} {:.0f}\"",
-                    limit.text, count->value, words, words, count->value));
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("\"{}\" is a percentage, but '{}' is a whole number, {:.0f}; expected {} and a number without unit, "
+                                    "such as \"{} {:.0f}\"",
+                                    limit.text, count->name, count->value, words, words, count->value));
   }
 }
 
@@ -134,6 +134,8 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
     throw base::Failure(base::ExitCode::bad_input, parsed.problem);
   }
   limit.value = parsed.value;
+  // Only now: a fraction as the limit of a count is permitted, but --update writes none.
+  set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share, worst.is_whole);
   const double value = worse_end(worst, direction);
   if (worst.interval && !std::isfinite(value)) {
     throw base::Failure(

@@ -34,7 +34,7 @@ const Json kAnswer = Json::parse(R"({
   "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
   "residual_tests": {"before": {"winding_C": {"periodogram_over_band": 1.1, "ljung_box_p": 0.4, "correlated_with": {"current": 0.1}}}},
   "power_balance_W": {"copper_loss": {"winding": 5.0}}, "curve": {"driver": [1.0], "driver_unit": "rad/s", "value": [2.0], "unit": "W"},
-  "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
+  "rest_of_hot_motor": [{"play": "5min", "rest_half_s": 240.0, "rest_all_s": null}], "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
 
 std::string refusal(std::string_view place) {
   try {
@@ -200,6 +200,23 @@ TEST_F(CommandChecks, NullOfATimeIsNever) {
   EXPECT_THAT(with_new_limits(text_, all, 0.05), HasSubstr("time_to_limit_s = \"at most 60 s\"")) << "no time is long enough";
 }
 
+TEST_F(CommandChecks, NullOfARestIsNever) {
+  std::vector<Outcome> all = outcomes("\"rest_of_hot_motor.5min.rest_all_s\" = \"at most 600 s\"\n\"rest_of_hot_motor.5min.rest_half_s\" = \"at most 600 s\"\n");
+  EXPECT_FALSE(all[0].passed);
+  EXPECT_EQ(value_text(all[0]), "never");
+  EXPECT_TRUE(all[1].passed) << all[1].reason;
+}
+
+TEST_F(CommandChecks, UpdateWritesWholeNumbersForCounts) {
+  std::vector<Outcome> all = outcomes(
+      "over = \"at most 1\"\n\"error.winding_C.samples\" = \"at least 1000\"\nplanners.fast.distance_m = \"at most 1 m\"\n");
+  EXPECT_FALSE(all[0].passed || all[1].passed || all[2].passed);
+  const std::string updated = with_new_limits(text_, all, 0.05);
+  EXPECT_THAT(updated, HasSubstr("over = \"at most 3\""));
+  EXPECT_THAT(updated, HasSubstr("\"error.winding_C.samples\" = \"at least 380\""));
+  EXPECT_THAT(updated, HasSubstr("planners.fast.distance_m = \"at most 946 m\"")) << "900.5 m and 5 %, no count";
+}
+
 TEST_F(CommandChecks, AViolatedLimitSaysSo) {
   const std::vector<Outcome> all = outcomes("idle_s = \"at least 5 s\"\n");
   EXPECT_FALSE(all[0].passed);
@@ -234,9 +251,9 @@ TEST_F(CommandChecks, ACountIsNotComparedWithAPercentage) {
   const std::vector<Outcome> all =
       outcomes("over = \"at least 100 %\"\n\"error.winding_C.samples\" = \"at most 40 %\"\ncoverage_90.winding_C = \"at least 90 %\"\n");
   EXPECT_FALSE(all[0].measured || all[1].measured);
-  EXPECT_THAT(explanation(all[0]), AllOf(HasSubstr(":5:8: over: \"at least 100 %\" is a percentage, but the number is a whole one, 2"),
+  EXPECT_THAT(explanation(all[0]), AllOf(HasSubstr("\"at least 100 %\" is a percentage, but 'over' is a whole number, 2"),
                                          HasSubstr("expected at least and a number without unit, such as \"at least 2\"")));
-  EXPECT_THAT(explanation(all[1]), AllOf(HasSubstr(":6:29: error.winding_C.samples: "), HasSubstr("is a whole one, 400")));
+  EXPECT_THAT(explanation(all[1]), HasSubstr("'error.winding_C.samples' is a whole number, 400"));
   EXPECT_TRUE(all[2].passed) << all[2].reason;
 }
 
@@ -279,7 +296,7 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
       "\"drift_K.value\" = \"at most 1 K\"\n");
   const std::string after = with_new_limits(text_, all, 0.05);
   EXPECT_THAT(after, HasSubstr("\"planners.fast.distance_m\" = 'at least 0.855 km' # far\n"));
-  EXPECT_THAT(after, HasSubstr("over = \"at most 2.1\"\n"));
+  EXPECT_THAT(after, HasSubstr("over = \"at most 3\"\n"));
   EXPECT_THAT(after, HasSubstr("planners.fast.peaks_C.p05 = \"at most 41 degC\"\n")) << "5 % of at least 20 K";
   EXPECT_THAT(after, HasSubstr("cold_C = \"at most 11.6 degC\"\n")) << "below 25 degC";
   EXPECT_THAT(after, HasSubstr("room_C = \"at least 24 degC\"\n")) << "no rise at all";
