@@ -123,8 +123,8 @@
 //   - Three wheels with a dead current sensor, pushed: fault 113 comes more often (13 of 25 robots instead of 3) and with it currents above
 //     1.3 times the limit. The guard was at most 3 K too cold with pushes below the grip, 11 K if all current sensors are dead as well.
 //   - A current sensor that lies slightly above the limit makes a robot creep that should stand: up to 0.6 m in 3 s, within the limit.
-//   - Two wheel sensors with three to ten times the speed, for example in turns per minute, while fewer than two are rejected (117) or one
-//     agrees by chance: up to 7 A above the limit, for 0.5 s in 32 minutes of a wheel.
+//   - Two wheel sensors that show three to ten times the speed, for example turns per minute: until both are rejected (117), and while one
+//     agrees with the correct sensors by chance. In 32 minutes of a wheel its current was above the limit for 0.5 s, by up to 7 A.
 //   - A wheel speed and the current sensor of the same wheel, both wrong: 166 degC at a computed 144 degC.
 //   - A wheel that carries less than a third of its load slides so often that it can get fault 117, and recovers only now and then: with a
 //     tenth of its load the robot loses up to 40 % of its speed.

@@ -21,7 +21,8 @@ struct Range {
   }
   static constexpr Range any() { return {}; }
   static constexpr Range positive() { return {0.0, std::numeric_limits<double>::infinity(), true, false}; }
-  static constexpr Range non_negative() { return {0.0, std::numeric_limits<double>::infinity(), false, false}; }
+  static constexpr Range at_least(double low) { return {low, std::numeric_limits<double>::infinity(), false, false}; }
+  static constexpr Range non_negative() { return at_least(0.0); }
   static constexpr Range between(double low, double high) { return {low, high, false, false}; }
 };
 

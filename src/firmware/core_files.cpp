@@ -118,17 +118,12 @@ Words words_for(const CoreSource& source, const std::vector<CoreNote>& notes) {
   return words;
 }
 
-/// A shorter longest period of the wheel-speed loop is named here, too, so that the next try succeeds.
-void require_watched_period(const robot::Robot& robot, const motor::MotorValues& motor, double period_s) {
-  if (period_s <= kLongestWatched_s) {
-    return;
+void require_watched_period(double period_s) {
+  if (period_s > kLongestWatched_s) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        fmt::format("a control period of {:.4g} ms is too long for the watchdog of a generated core: expected at most {:.2f} ms",
+                                    1e3 * period_s, 1e3 * kLongestWatched_s));
   }
-  const WheelLoopPlant plant = wheel_loop_plant(make_body_with_known_friction(robot, motor), robot::drive_constants(robot, motor));
-  const double longest_ms = 1e3 * std::min(kLongestWatched_s, longest_loop_period_s(plant));
-  throw base::Failure(base::ExitCode::bad_input,
-                      fmt::format("a control period of {:.3g} ms is too long for the watchdog of a generated core, which may end after "
-                                  "{:.3g} ms and must not end within two periods: expected at most {:.2f} ms. Shorten it with --period",
-                                  1e3 * period_s, 2e3 * kLongestWatched_s, std::floor(1e2 * longest_ms) / 1e2));
 }
 
 std::string options_text(const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating) {
@@ -177,7 +172,7 @@ std::string in_one_line(std::string text) {
 
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version) {
-  require_watched_period(robot, motor.nominal, options.period_s);
+  require_watched_period(options.period_s);
   const HostGuard guard(derating);
   CoreSource source{.robot = robot,
                     .motor = motor,
@@ -237,7 +232,7 @@ std::size_t largest_core_bytes(std::size_t table_bytes) {
 GeneratedCore generate_core(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options,
                             derate::DerateOptions derate_options, std::string_view version, const base::Progress& progress) {
   require_drive_values(robot, {&motor, 1});
-  require_watched_period(robot, motor.nominal, options.period_s);
+  require_watched_period(options.period_s);
   static_cast<void>(make_core_config(robot, motor.nominal, options));
   derate_options.period_s = guard_period_s(options.period_s);
   derate::Derating derating = derate::derate(motor, robot, derate_options, progress);

@@ -47,9 +47,11 @@ struct CoreSource {
 /// Guard period of a control period: the whole multiple nearest to 10 ms.
 double guard_period_s(double period_s);
 
-/// Longest control period of a generated core. The watchdog of firmware/board_default.c ends within robot_core::kWatchdog_s at the slowest
-/// rate of its oscillator, 17 kHz. At the fastest, 47 kHz, it ends after 7.15 ms and must not end within two periods.
-inline constexpr double kLongestWatched_s = 84 * 4 / 47e3 / 2.0;
+/// Longest control period of a generated core, rounded down to 0.01 ms. The watchdog of firmware/board_default.c ends within
+/// robot_core::kWatchdog_s at the slowest rate of its oscillator, 17 kHz. At the fastest, 47 kHz, it ends after 7.15 ms and must not end
+/// within two periods.
+inline constexpr double kLongestWatched_s = 3.57e-3;
+static_assert(2.0 * kLongestWatched_s <= 84 * 4 / 47e3);
 
 /// Returns the folder; equal inputs give equal bytes. The derating must have guard_period_s(). Reads the files of robot and motor again for
 /// the hash. Throws Failure (bad_input) as make_core_config() and HostGuard do, if the period is above kLongestWatched_s, or if a file

@@ -31,7 +31,8 @@ Document core_folder_document(const firmware::CoreFolder& folder, const derate::
   add_labelled(table, "configuration", fmt::format("check sum {:08x}", folder.config_check_sum));
   document.tables.push_back(std::move(table));
   for (const firmware::CoreNote& note : folder.notes) {
-    document.add_note(Severity::note, to_string(note));
+    const bool is_unsafe = std::holds_alternative<firmware::ShadowModeChosen>(note);
+    document.add_note(is_unsafe ? Severity::warning : Severity::note, to_string(note));
   }
   return document;
 }

@@ -11,6 +11,7 @@ namespace heatsoak::present {
 
 Document core_folder_document(const firmware::CoreFolder& folder, const derate::Derating& derating, const firmware::CoreOptions& options,
                               const std::string& out);
+/// Without the keys of the notes, see add_notes().
 Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating& derating, const motor::Motor& motor,
                       const firmware::CoreOptions& options, const std::string& out);
 

@@ -11,10 +11,6 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
                       const firmware::CoreOptions& options, const std::string& out) {
   const derate::Guarantee& checked = derating.guarantee;
   Json files = Json::array();
-  Json notes = Json::array();
-  for (const firmware::CoreNote& note : folder.notes) {
-    notes.push_back(to_string(note));
-  }
   for (const firmware::CoreFile& file : folder.files) {
     files.push_back({{"path", file.path}, {"bytes", file.content.size()}});
   }
@@ -40,8 +36,7 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
             {"limp_current_A", rounded(folder.limp_current_A, 4)},
             {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
             {"nodes", derating.observer.state_names()}}},
-          {"default_spreads", default_spreads_json({&motor, 1})},
-          {"notes", notes}};
+          {"default_spreads", default_spreads_json({&motor, 1})}};
 }
 
 }  // namespace heatsoak::present

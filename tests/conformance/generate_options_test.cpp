@@ -45,7 +45,7 @@ TEST(GenerateCorePeriod, ShortestCompilesForHostAndController) { expect_period_b
 TEST(GenerateCorePeriod, LongestCompilesForHostAndController) { expect_period_builds("3.57 ms"); }
 
 TEST(GenerateCorePeriod, OneThatItsWatchdogCannotServeIsRefused) {
-  for (const char* const period : {"3.58 ms", "5 ms", "12 ms", "99 ms"}) {
+  for (const char* const period : {"3.571 ms", "5 ms", "12 ms", "1 s"}) {
     const TemporaryFolder folder;
     const ProgramRun done = run(generate(folder, {"--period", period}));
     EXPECT_EQ(done.exit_code, 2) << period;
@@ -64,6 +64,8 @@ TEST(GenerateCoreShadow, CountsAndLimitsNothing) {
   EXPECT_EQ(done.json()["shadow_mode"], true);
   EXPECT_NE(usual.json()["config_check_sum"], done.json()["config_check_sum"]);
   EXPECT_THAT(done.json()["notes"][0].get<std::string>(), HasSubstr("limits no current"));
+  EXPECT_EQ(done.json()["warnings"], done.json()["notes"]);
+  EXPECT_TRUE(usual.json()["warnings"].empty());
   const auto text = [](const TemporaryFolder& folder, const char* path) { return content_of(folder.path() / "core" / path); };
   EXPECT_THAT(text(shadow, "README.md"), HasSubstr("**Shadow mode: the thermal guard limits no current"));
   EXPECT_THAT(text(plain, "README.md"), Not(HasSubstr("Shadow mode")));

@@ -445,7 +445,7 @@ TEST(GenerateCore, SaysWhatIsWrongAndLeavesNothing) {
       {{"--out", "x"}, 2, "the motor is missing"},
       {with_motor, 2, "--out"},
       {with_motor + Words{"--out", "x", "--period", "50ms"}, 2, "period"},
-      {with_motor + Words{"--out", "x", "--period", "1s"}, 2, "--period"},
+      {with_motor + Words{"--out", "x", "--period", "0.01ms"}, 2, "--period: 0.01ms is out of range"},
       {with_motor + Words{"--out", "taken"}, 2, "--force"},
       {with_motor + Words{"--out", "file"}, 2, "is a file"},
       {with_motor + Words{"--out", "file/x"}, 2, "file is a file; expected a folder"},

@@ -42,7 +42,9 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
   present::Document document = present::core_folder_document(core.folder, core.derating, options.core, options.out);
   present::add_robot_notes(document, *robot);
   session.show(document);
-  session.answer(present::core_folder_json(core.folder, core.derating, motor, options.core, options.out));
+  present::Json json = present::core_folder_json(core.folder, core.derating, motor, options.core, options.out);
+  present::add_notes(json, document.notes);
+  session.answer(json);
   return base::ExitCode::done;
 }
 
@@ -63,7 +65,8 @@ Command generate_command() {
             app.add_flag("--force", options->force, "replace the generated files in a folder that is not empty, keep all others");
             add_quantity(
                 app, "--period", options->core.period_s,
-                {"period", "s", base::Range::between(1e-4, 0.1), "time between two control steps, at most 3.57 ms; 1 ms unless given"});
+                {"period", "s", base::Range::at_least(1e-4),
+                 "time between two control steps, 1 ms unless given; the longest one is what the watchdog of the firmware allows"});
             app.add_flag("--shadow", options->core.shadow_mode,
                          "shadow mode: the thermal guard counts what it would limit, but limits nothing; to see in telemetry what the "
                          "guard would cost");
