@@ -1,5 +1,5 @@
 /* Derating table of a motor and its reader. Plain C99: the drive core and the exported C header share this text. Method: trilinear
-   interpolation of the squared current, because copper heats with the square. */
+   interpolation of the copper heat per ohm at 25 degC, which is linear in both temperatures for the network of a data sheet. */
 #ifndef HEATSOAK_CURRENT_TABLE_H
 #define HEATSOAK_CURRENT_TABLE_H
 
@@ -18,7 +18,9 @@ typedef struct {
   heatsoak_axis speed_rad_per_s;
   heatsoak_axis stator_C;
   heatsoak_axis winding_C;
-  const float *square_A2; /* [speed][stator][winding]; negative: even zero current is too much */
+  const float *heat_per_ohm_A2; /* [speed][stator][winding], squared current times resistance ratio; negative: zero current is too much */
+  float resistance_at_0C_ratio; /* resistance of the winding at 0 degC, as a ratio to that at 25 degC */
+  float resistance_ratio_per_K; /* above 0 for a metal; the ratio must be above 0 at the first point of the winding axis */
   float most_current_A;
   float straight_below_A;           /* below this current the result is square/straight_below, so that it falls to 0 with a finite slope */
   float most_speed_rad_per_s;       /* above this speed the allowed current falls linearly */
@@ -28,8 +30,8 @@ typedef struct {
 
 /* Position of a speed and a stator temperature in the table: found once, used for several winding temperatures. */
 typedef struct {
-  int32_t first;       /* index of the first square of the row; negative: no current is allowed */
-  int32_t next_stator; /* step to the square of the next stator point; 0 if the axis has one point */
+  int32_t first;       /* index of the first heat of the row; negative: no current is allowed */
+  int32_t next_stator; /* step to the heat of the next stator point; 0 if the axis has one point */
   int32_t next_speed;
   float stator_share; /* position between two stator points, 0 to 1 */
   float speed_share;
@@ -76,34 +78,36 @@ static inline heatsoak_row heatsoak_find_row(const heatsoak_current_table *table
 }
 
 /* Linear interpolation between two points of the winding axis. */
-static inline float heatsoak_along_winding(const float *square_A2, int32_t at, float share) {
-  return square_A2[at] + share * (square_A2[at + 1] - square_A2[at]);
+static inline float heatsoak_along_winding(const float *heat_A2, int32_t at, float share) {
+  return heat_A2[at] + share * (heat_A2[at + 1] - heat_A2[at]);
 }
 
-static inline float heatsoak_along_stator(const float *square_A2, const heatsoak_row *row, int32_t at, float share) {
-  const float low_A2 = heatsoak_along_winding(square_A2, at, share);
+static inline float heatsoak_along_stator(const float *heat_A2, const heatsoak_row *row, int32_t at, float share) {
+  const float low_A2 = heatsoak_along_winding(heat_A2, at, share);
   return row->next_stator == 0 ? low_A2
-                               : low_A2 + row->stator_share * (heatsoak_along_winding(square_A2, at + row->next_stator, share) - low_A2);
+                               : low_A2 + row->stator_share * (heatsoak_along_winding(heat_A2, at + row->next_stator, share) - low_A2);
 }
 
-/* Square of the allowed current; 0 for a winding above its axis and for NaN. */
+static inline float heatsoak_resistance_ratio(const heatsoak_current_table *table, float winding_C) {
+  return table->resistance_at_0C_ratio + table->resistance_ratio_per_K * winding_C;
+}
+
+/* Square of the allowed current; 0 for a winding above its axis and for NaN. A winding below its axis counts as its first point. */
 static inline float heatsoak_allowed_A2(const heatsoak_current_table *table, const heatsoak_row *row, float winding_C) {
   const float first_C = table->winding_C.points[0];
-  float counted_C = winding_C;
+  const float counted_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
   float share = 0.0f;
-  float low_A2;
+  float heat_A2;
   int32_t at;
-  if (row->hotter_K > 0.0f) {
-    counted_C = (winding_C < first_C ? first_C : winding_C) + row->hotter_K;
-  }
   if (row->first < 0 || !(counted_C <= table->winding_C.points[table->winding_C.count - 1])) {
     return 0.0f;
   }
   at = row->first + heatsoak_find(&table->winding_C, counted_C, &share);
-  low_A2 = heatsoak_along_stator(table->square_A2, row, at, share);
-  return row->next_speed == 0
-             ? low_A2
-             : low_A2 + row->speed_share * (heatsoak_along_stator(table->square_A2, row, at + row->next_speed, share) - low_A2);
+  heat_A2 = heatsoak_along_stator(table->heat_per_ohm_A2, row, at, share);
+  if (row->next_speed != 0) {
+    heat_A2 += row->speed_share * (heatsoak_along_stator(table->heat_per_ohm_A2, row, at + row->next_speed, share) - heat_A2);
+  }
+  return heat_A2 / heatsoak_resistance_ratio(table, counted_C);
 }
 
 /* Square root of a positive number: one instruction if the controller has it, else the C library's. Both round correctly. */

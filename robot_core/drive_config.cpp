@@ -45,8 +45,9 @@ constexpr float kMostGuardPeriods = 3e4F;
   const float periods = guard.period_s / period_s;
   const float whole = static_cast<float>(static_cast<int>(clamped(periods, 0.0F, kMostGuardPeriods) + 0.5F));
   return guard.node_count >= 2 && guard.node_count <= kMostGuardNodes && is_positive(guard.period_s) && whole >= 1.0F &&
-         absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.table.square_A2 != nullptr &&
+         absolute(periods - whole) < 1e-3F * whole && guard.rates != nullptr && guard.table.heat_per_ohm_A2 != nullptr &&
          guard.table.speed_rad_per_s.count >= 1 && guard.table.stator_C.count >= 1 && guard.table.winding_C.count >= 2 &&
+         guard.table.resistance_ratio_per_K >= 0.0F && heatsoak_resistance_ratio(&guard.table, guard.table.winding_C.points[0]) > 0.0F &&
          guard.heat_ratio >= 1.0F && is_finite(guard.winding_limit_C) && is_finite(guard.coldest_ambient_C) &&
          guard.hottest_ambient_C < guard.winding_limit_C;
 }

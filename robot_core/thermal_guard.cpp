@@ -127,22 +127,25 @@ namespace {
   return heatsoak_allowed_A2(&table, &row, winding_C);
 }
 
-/// Temperature at which the table allows only `current_A`; the squared current falls linearly between the axis points.
+/// Temperature at which the table allows only `current_A`. The heats of the table and of that current are linear between the axis points.
 [[gnu::cold]] float limiting_temperature_C(const heatsoak_current_table& table, heatsoak_row row, float current_A) {
   const heatsoak_axis& axis = table.winding_C;
   const float square_A2 = current_A * larger(current_A, table.straight_below_A);
   const float hotter_K = row.hotter_K;
   row.hotter_K = 0.0F;
-  int below = 0;
-  int above = axis.count - 1;
-  while (above - below > 1) {
-    const int middle = (below + above) / 2;
-    (square_at_A2(table, row, axis.points[middle]) >= square_A2 ? below : above) = middle;
+  float limiting_C = axis.points[0];
+  float spare_A2 = 0.0F;
+  for (int i = 0; i < axis.count; ++i) {
+    const float here_C = axis.points[i];
+    const float here_A2 = (square_at_A2(table, row, here_C) - square_A2) * heatsoak_resistance_ratio(&table, here_C);
+    if (here_A2 < 0.0F) {
+      limiting_C += spare_A2 / (spare_A2 - here_A2) * (here_C - limiting_C);
+      break;
+    }
+    limiting_C = here_C;
+    spare_A2 = here_A2;
   }
-  const float low_A2 = square_at_A2(table, row, axis.points[below]);
-  const float high_A2 = square_at_A2(table, row, axis.points[above]);
-  const float share = low_A2 > high_A2 ? clamped((low_A2 - square_A2) / (low_A2 - high_A2), 0.0F, 1.0F) : 0.0F;
-  return axis.points[below] + share * (axis.points[above] - axis.points[below]) - hotter_K;
+  return limiting_C - hotter_K;
 }
 
 float hottest_body_C(const GuardModel& model, const GuardState& state) {

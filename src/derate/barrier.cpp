@@ -4,6 +4,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 
 #include "motor/datasheet_network.h"
@@ -13,7 +14,14 @@ namespace {
 
 constexpr double kBelow_ratio = 1e-8;  ///< relative reduction that keeps the result below the root
 
-/// Returns the largest x up to `most_A2` with margin(x) ≥ 0; see Barrier::square_A2().
+/// Zero of the line through the margins at zero and at `most_A2`, which is positive; at most 16 times `most_A2`.
+double beyond_A2(double none, double there, double most_A2) {
+  constexpr double kFurthest_ratio = 16.0;
+  const double fall = (none - there) / most_A2;
+  return most_A2 * (fall > 0.0 ? std::min(kFurthest_ratio, none / fall / most_A2) : kFurthest_ratio);
+}
+
+/// Returns the largest x with margin(x) ≥ 0, searched up to `most_A2`; see Barrier::square_A2().
 template <class Margin>
 double largest_square_A2(const Margin& margin, double most_A2) {
   const double probe_A2 = most_A2 / 64.0;
@@ -26,13 +34,16 @@ double largest_square_A2(const Margin& margin, double most_A2) {
   const double straight_A2 = fall > 0.0 ? std::min(most_A2, none / fall) : most_A2;
   const double there = margin(straight_A2);
   constexpr double kRounding = 1e-10;
-  if (std::abs(there) <= kRounding * none || (straight_A2 == most_A2 && there >= 0.0)) {
+  if (straight_A2 == most_A2 && there >= 0.0) {
+    return beyond_A2(none, there, most_A2) * (1.0 - kBelow_ratio);
+  }
+  if (std::abs(there) <= kRounding * none) {
     return straight_A2 * (1.0 - kBelow_ratio);
   }
   double low_A2 = there > 0.0 ? straight_A2 : 0.0;
   double high_A2 = there > 0.0 ? most_A2 : straight_A2;
-  if (margin(high_A2) >= 0.0) {
-    return high_A2;
+  if (const double highest = margin(high_A2); highest >= 0.0) {
+    return beyond_A2(none, highest, most_A2);
   }
   constexpr int kBits = 24;
   std::uintmax_t iterations = 60;
@@ -53,7 +64,7 @@ Barrier::Barrier(const Observer& observer, const BarrierRules& rules)
 double Barrier::square_A2(double speed_rad_per_s, double stator_C, double winding_C) {
   const Place at{speed_rad_per_s, stator_C, winding_C};
   const double most_A2 = 4.0 * rules_.most_current_A * rules_.most_current_A;
-  double least_A2 = most_A2;
+  double least_A2 = std::numeric_limits<double>::infinity();
   for (const HotCase& each : cases_) {
     const auto winding = [&](double square_A2) { return winding_margin(each, at, square_A2); };
     least_A2 = std::min(least_A2, largest_square_A2(winding, most_A2));

@@ -48,15 +48,16 @@ void require_sound(const CommittedTable& committed, const CurrentTable& table, i
   require_ascending(committed, line, "speed", table.speed_rad_per_s, 1);
   require_ascending(committed, line, "stator", table.stator_C, 1);
   require_ascending(committed, line, "winding", table.winding_C, 2);
-  if (!std::ranges::all_of(table.square_A2, [](double each_A2) { return std::isfinite(each_A2); })) {
+  if (!std::ranges::all_of(table.heat_per_ohm_A2, [](double each_A2) { return std::isfinite(each_A2); })) {
     throw no_current(committed, line);
   }
-  if (!(table.most_current_A > 0.0) || !(table.straight_below_A > 0.0) || !(table.winding_per_stator_K >= 0.0) ||
+  if (!(table.resistance_ratio_per_K >= 0.0) || !(table.resistance_ratio(table.winding_C.front()) > 0.0) || !(table.most_current_A > 0.0) ||
+      !(table.straight_below_A > 0.0) || !(table.winding_per_stator_K >= 0.0) ||
       !(table.no_current_speed_rad_per_s > table.most_speed_rad_per_s)) {
-    throw base::bad_input(
-        {committed.file.string(), line, 1}, "",
-        "MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing "
-        "or out of range; expected a header that `heatsoak derate` wrote");
+    throw base::bad_input({committed.file.string(), line, 1}, "",
+                          "RESISTANCE_AT_0C_RATIO, RESISTANCE_RATIO_PER_K, MOST_CURRENT_A, STRAIGHT_BELOW_A, WINDING_PER_STATOR_K, "
+                          "MOST_SPEED_RAD_PER_S or NO_CURRENT_SPEED_RAD_PER_S is missing "
+                          "or out of range; expected a header that `heatsoak derate` wrote");
   }
 }
 
@@ -120,7 +121,7 @@ std::map<std::string, std::string> by_name(const std::string& flags) {
 /// Reads the table of c_header_q15: four arrays, and the sizes and constants of its structure.
 void read_integer_header(const std::string& text, CommittedTable& committed) {
   static const std::regex kTable(R"(static const heatsoak_integer_table (\w+)_table = \{\s*\{\w+,\s*(\d+)\},\s*\{\w+,\s*(\d+)\},\s*)"
-                                 R"(\{\w+,\s*(\d+)\},\s*\w+,\s*(\d+)u,\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+)\};)");
+                                 R"(\{\w+,\s*(\d+)\},\s*\w+,\s*(\d+)u,\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+)\};)");
   std::smatch found;
   const std::vector<HeaderArray> arrays = header_arrays(text);
   integer_form::QuantisedTable table;
@@ -136,19 +137,21 @@ void read_integer_header(const std::string& text, CommittedTable& committed) {
   };
   const auto constant = [&](int group) { return static_cast<std::int32_t>(std::strtol(found[group].str().c_str(), nullptr, 10)); };
   if (!std::regex_search(text, found, kTable) || !read("speed_mrad_per_s", table.speed_mrad_per_s) || !read("stator_mC", table.stator_mC) ||
-      !read("winding_mC", table.winding_mC) || !read("square", table.square) ||
+      !read("winding_mC", table.winding_mC) || !read("heat_per_ohm", table.heat) ||
       static_cast<std::size_t>(constant(2)) != table.speed_mrad_per_s.size() ||
       static_cast<std::size_t>(constant(3)) != table.stator_mC.size() || static_cast<std::size_t>(constant(4)) != table.winding_mC.size() ||
-      table.square.size() != table.speed_mrad_per_s.size() * table.stator_mC.size() * table.winding_mC.size()) {
+      table.heat.size() != table.speed_mrad_per_s.size() * table.stator_mC.size() * table.winding_mC.size()) {
     throw base::bad_input({committed.file.string()}, "",
                           "contains no whole table of integers; expected a header that `heatsoak derate --to c_header_q15` wrote");
   }
   table.unit_mA2 = static_cast<std::uint32_t>(constant(5));
-  table.most_current_mA = constant(6);
-  table.straight_below_mA = constant(7);
-  table.most_speed_mrad_per_s = constant(8);
-  table.no_current_speed_mrad_per_s = constant(9);
-  table.winding_per_stator_K = constant(10);
+  table.resistance_at_first = constant(6);
+  table.resistance_per_mK = constant(7);
+  table.most_current_mA = constant(8);
+  table.straight_below_mA = constant(9);
+  table.most_speed_mrad_per_s = constant(10);
+  table.no_current_speed_mrad_per_s = constant(11);
+  table.winding_per_stator_K = constant(12);
   committed.table = table.in_units();
   committed.code = text;
   committed.is_integer = true;
@@ -162,34 +165,41 @@ void read_header(const std::string& text, CommittedTable& committed) {
     throw base::bad_input({committed.file.string(), line_at(text, splice), 1}, "",
                           "contains a backslash or its trigraph; expected a header that `heatsoak derate` wrote, which has none");
   }
+  static const std::regex kSquares(R"((_square_A2|_square)\[\d*\] = )");
+  if (std::smatch squares; std::regex_search(text, squares, kSquares)) {
+    throw base::bad_input({committed.file.string(), line_at(text, static_cast<std::size_t>(squares.position(0))), 1}, squares[1].str(),
+                          "contains a table of squared currents, the form of earlier versions; generate the header again");
+  }
   if (text.find("heatsoak_integer_table") != std::string::npos) {
     read_integer_header(text, committed);
     return;
   }
   const std::vector<HeaderArray> arrays = header_arrays(text);
   const auto find = [&](const std::string& name) { return std::ranges::find(arrays, name, &HeaderArray::name); };
-  constexpr std::string_view kSquare = "_square_A2";
-  for (const HeaderArray& currents : arrays) {
-    if (!currents.name.ends_with(kSquare)) {
+  constexpr std::string_view kHeat = "_heat_per_ohm_A2";
+  for (const HeaderArray& heats : arrays) {
+    if (!heats.name.ends_with(kHeat)) {
       continue;
     }
-    const std::string prefix = currents.name.substr(0, currents.name.size() - kSquare.size());
+    const std::string prefix = heats.name.substr(0, heats.name.size() - kHeat.size());
     const auto speeds = find(prefix + "_speed_rad_per_s");
     const auto stators = find(prefix + "_stator_C");
     const auto windings = find(prefix + "_winding_C");
     if (speeds == arrays.end() || stators == arrays.end() || windings == arrays.end()) {
       continue;
     }
-    const int line = line_at(text, currents.begin);
-    if (currents.values.size() != speeds->values.size() * stators->values.size() * windings->values.size()) {
-      throw base::bad_input({committed.file.string(), line, 1}, currents.name,
-                            fmt::format("contains {} currents; expected {} × {} × {}, the product of the lengths of its axes",
-                                        currents.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
+    const int line = line_at(text, heats.begin);
+    if (heats.values.size() != speeds->values.size() * stators->values.size() * windings->values.size()) {
+      throw base::bad_input({committed.file.string(), line, 1}, heats.name,
+                            fmt::format("contains {} numbers; expected {} × {} × {}, the product of the lengths of its axes",
+                                        heats.values.size(), speeds->values.size(), stators->values.size(), windings->values.size()));
     }
     committed.table = {.speed_rad_per_s = speeds->values,
                        .stator_C = stators->values,
                        .winding_C = windings->values,
-                       .square_A2 = currents.values,
+                       .heat_per_ohm_A2 = heats.values,
+                       .resistance_at_0C_ratio = constant(text, "RESISTANCE_AT_0C_RATIO"),
+                       .resistance_ratio_per_K = constant(text, "RESISTANCE_RATIO_PER_K"),
                        .most_current_A = constant(text, "MOST_CURRENT_A"),
                        .straight_below_A = constant(text, "STRAIGHT_BELOW_A"),
                        .most_speed_rad_per_s = constant(text, "MOST_SPEED_RAD_PER_S"),
@@ -322,9 +332,9 @@ void compare_rows(const std::vector<CommittedRow>& rows, const CurrentTable& fre
 /// Returns the difference in A that rounding of the file may cause.
 double tolerance_A(const CommittedTable& committed, const CurrentTable& fresh) {
   constexpr double kRounding_share = 5e-4;
-  double most_A = fresh.current_of_A(*std::ranges::max_element(fresh.square_A2));
+  double most_A = fresh.largest_A();
   if (committed.table) {
-    most_A = std::max(most_A, committed.table->current_of_A(*std::ranges::max_element(committed.table->square_A2)));
+    most_A = std::max(most_A, committed.table->largest_A());
   }
   for (const CommittedRow& row : committed.rows) {
     most_A = std::max(most_A, row.current_A);

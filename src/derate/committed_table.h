@@ -65,7 +65,7 @@ struct TableComparison {
 };
 
 /// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
-/// axes, because both tables are piecewise linear in the squared current. Compares a CSV table in its own rows. Ignores differences below
+/// axes, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores differences below
 /// 0.05 % of the largest current (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 

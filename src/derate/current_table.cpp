@@ -51,9 +51,10 @@ Number CurrentTable::allowed_A(Number speed, Number stator, Number winding) cons
   if (!(speed < last_speed)) {
     return Number{0};
   }
+  const auto first_winding = static_cast<Number>(winding_C.front());
+  winding = winding < first_winding ? first_winding : winding;
   if (stator > last_stator) {
-    const auto first_winding = static_cast<Number>(winding_C.front());
-    winding = (winding < first_winding ? first_winding : winding) + static_cast<Number>(winding_per_stator_K) * (stator - last_stator);
+    winding += static_cast<Number>(winding_per_stator_K) * (stator - last_stator);
   }
   if (!(winding <= static_cast<Number>(winding_C.back())) || !(stator < Number{1e6F})) {
     return Number{0};
@@ -62,8 +63,8 @@ Number CurrentTable::allowed_A(Number speed, Number stator, Number winding) cons
   const Between<Number> at_stator = between(stator_C, stator);
   const Between<Number> at_winding = between(winding_C, winding);
   const auto along_winding = [&](std::size_t i, std::size_t j) {
-    const auto low = static_cast<Number>(square_A2[place(i, j, at_winding.below)]);
-    const auto high = static_cast<Number>(square_A2[place(i, j, at_winding.above)]);
+    const auto low = static_cast<Number>(heat_per_ohm_A2[place(i, j, at_winding.below)]);
+    const auto high = static_cast<Number>(heat_per_ohm_A2[place(i, j, at_winding.above)]);
     return low + at_winding.share * (high - low);
   };
   const auto along_stator = [&](std::size_t i) {
@@ -71,8 +72,17 @@ Number CurrentTable::allowed_A(Number speed, Number stator, Number winding) cons
     return low + at_stator.share * (along_winding(i, at_stator.above) - low);
   };
   const Number low = along_stator(at_speed.below);
-  const Number current = current_of_A(low + at_speed.share * (along_stator(at_speed.above) - low));
+  const Number heat = low + at_speed.share * (along_stator(at_speed.above) - low);
+  const Number current = current_of_A(heat / resistance_ratio(winding));
   return speed > most_speed ? current * ((last_speed - speed) / (last_speed - most_speed)) : current;
+}
+
+double CurrentTable::largest_A() const {
+  double most_A2 = 0.0;
+  for (std::size_t place = 0; place < heat_per_ohm_A2.size(); ++place) {
+    most_A2 = std::max(most_A2, square_A2(place));
+  }
+  return current_of_A(most_A2);
 }
 
 template float CurrentTable::allowed_A<float>(float, float, float) const;

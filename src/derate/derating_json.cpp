@@ -69,37 +69,43 @@ Json table_json(const CurrentTable& table) {
   // Rounded down, so that a table read back from the file never allows more current.
   const auto rounded_down = [](double value) { return std::floor(value * 1e4) / 1e4; };
   Json current = Json::array();
-  Json square = Json::array();
-  for (const double square_A2 : table.square_A2) {
-    current.push_back(rounded_down(table.current_of_A(square_A2)));
-    square.push_back(rounded_down(square_A2));
+  Json heat = Json::array();
+  for (std::size_t place = 0; place < table.heat_per_ohm_A2.size(); ++place) {
+    current.push_back(rounded_down(table.current_of_A(table.square_A2(place))));
+    heat.push_back(rounded_down(table.heat_per_ohm_A2[place]));
   }
   const auto rounded_up = [](double value, double per_unit) { return std::ceil(value * per_unit) / per_unit; };
   const TableBound& bound = table.bound;
-  return {{"order", {"speed_rad_per_s", "stator_C", "winding_C"}},
-          {"units",
-           {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}, {"current_squared_A2", "A^2"}}},
-          {"interpolation",
-           "Interpolate current_squared_A2 linearly between grid points and hold it below the first one; an axis with one grid point has "
-           "no influence. The current is its square root, or current_squared_A2/straight_below_A if that is below straight_below_A; it is "
-           "at most most_current_A. A stator temperature above the last grid point adds winding_per_stator_K times the excess to the "
-           "winding temperature; above the last grid point of the winding the current is 0 A. Above most_speed_rad_per_s the current falls "
-           "linearly to 0 A at no_current_speed_rad_per_s. Linear interpolation of current_A gives a lower current."},
-          {"most_current_A", rounded_down(table.most_current_A)},
-          {"straight_below_A", in_single_precision(table.straight_below_A)},
-          {"most_speed_rad_per_s", table.most_speed_rad_per_s},
-          {"no_current_speed_rad_per_s", table.no_current_speed_rad_per_s},
-          {"winding_per_stator_K", table.winding_per_stator_K},
-          {"bound",
-           {{"shortfall_ratio", bound.shortfall_ratio},
-            {"winding_slope_A_per_K", rounded_up(bound.winding_slope_A_per_K, 1e3)},
-            {"stator_slope_A_per_K", rounded_up(bound.stator_slope_A_per_K, 1e3)},
-            {"speed_slope_A_s_per_rad", rounded_up(bound.speed_slope_A_s_per_rad, 1e4)}}},
-          {"speed_rad_per_s", table.speed_rad_per_s},
-          {"stator_C", table.stator_C},
-          {"winding_C", table.winding_C},
-          {"current_A", current},
-          {"current_squared_A2", square}};
+  return {
+      {"order", {"speed_rad_per_s", "stator_C", "winding_C"}},
+      {"units",
+       {{"speed_rad_per_s", "rad/s"}, {"stator_C", "degC"}, {"winding_C", "degC"}, {"current_A", "A"}, {"heat_per_ohm_A2", "A^2"}}},
+      {"interpolation",
+       "Interpolate heat_per_ohm_A2 linearly between grid points and hold it below the first one; an axis with one grid point has no "
+       "influence. Divide by the resistance of the winding as a ratio to "
+       "that at 25 degC, resistance_at_0C_ratio + resistance_ratio_per_K * winding_C; a winding below its first grid point counts as that "
+       "point. The current is the square root of the quotient, "
+       "or quotient/straight_below_A if that is below straight_below_A; it is at most most_current_A. A stator temperature above the last "
+       "grid point adds winding_per_stator_K times the excess to the "
+       "winding temperature; above the last grid point of the winding the current is 0 A. Above most_speed_rad_per_s the current falls "
+       "linearly to 0 A at no_current_speed_rad_per_s. current_A holds at the grid points only: they are too far apart to interpolate it."},
+      {"resistance_at_0C_ratio", in_single_precision(table.resistance_at_0C_ratio)},
+      {"resistance_ratio_per_K", in_single_precision(table.resistance_ratio_per_K)},
+      {"most_current_A", rounded_down(table.most_current_A)},
+      {"straight_below_A", in_single_precision(table.straight_below_A)},
+      {"most_speed_rad_per_s", table.most_speed_rad_per_s},
+      {"no_current_speed_rad_per_s", table.no_current_speed_rad_per_s},
+      {"winding_per_stator_K", table.winding_per_stator_K},
+      {"bound",
+       {{"shortfall_ratio", bound.shortfall_ratio},
+        {"winding_slope_A_per_K", rounded_up(bound.winding_slope_A_per_K, 1e3)},
+        {"stator_slope_A_per_K", rounded_up(bound.stator_slope_A_per_K, 1e3)},
+        {"speed_slope_A_s_per_rad", rounded_up(bound.speed_slope_A_s_per_rad, 1e4)}}},
+      {"speed_rad_per_s", table.speed_rad_per_s},
+      {"stator_C", table.stator_C},
+      {"winding_C", table.winding_C},
+      {"current_A", current},
+      {"heat_per_ohm_A2", heat}};
 }
 
 Json guarantee_json(const Derating& derating, const Guarantee& checked) {
@@ -159,7 +165,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
       signals.push_back({{"name", observed::signals()[i].name}, {"meaning", observed::signals()[i].meaning}});
     }
   }
-  return {{"schema", "heatsoak.derating/1"},
+  return {{"schema", "heatsoak.derating/2"},
           {"program", derating.provenance.program_version},
           {"input_hash", {{"name", kInputHash}, {"value", derating.provenance.input_hash}}},
           {"motor", derating.motor_id},

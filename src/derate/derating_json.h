@@ -7,7 +7,7 @@
 
 namespace heatsoak::derate {
 
-/// Returns the derating in schema heatsoak.derating/1. The entry "observer" holds equations and parameters if the network is that of the
+/// Returns the derating in schema heatsoak.derating/2. The entry "observer" holds equations and parameters if the network is that of the
 /// data sheet without effects of the motor's own, else null.
 nlohmann::ordered_json derating_json(const Derating& derating);
 

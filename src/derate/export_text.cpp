@@ -112,7 +112,9 @@ std::string own_effects_text(const Derating& derating) {
 void require_finite(const Derating& derating) {
   const CurrentTable& table = derating.table;
   const auto is_finite = [](double value) { return std::isfinite(value); };
-  const double numbers[] = {derating.rules.limits.winding_C,
+  const double numbers[] = {table.resistance_at_0C_ratio,
+                            table.resistance_ratio_per_K,
+                            derating.rules.limits.winding_C,
                             derating.rules.limits.stator_C.value_or(0.0),
                             derating.rules.most_current_A,
                             derating.rules.most_speed_rad_per_s,
@@ -122,7 +124,7 @@ void require_finite(const Derating& derating) {
                             derating.options.coldest_ambient_C,
                             derating.options.guarantee.required_share,
                             derating.options.period_s};
-  if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.square_A2, is_finite) ||
+  if (!std::ranges::all_of(numbers, is_finite) || !std::ranges::all_of(table.heat_per_ohm_A2, is_finite) ||
       !std::ranges::all_of(table.speed_rad_per_s, is_finite) || !std::ranges::all_of(table.stator_C, is_finite) ||
       !std::ranges::all_of(table.winding_C, is_finite)) {
     throw base::Failure(

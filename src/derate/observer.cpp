@@ -66,7 +66,7 @@ std::array<thermal::Traced, observed::kSignalCount> traced_signals(thermal::Form
 }  // namespace
 
 Observer::Observer(const thermal::Network& network, const motor::MotorValues& motor, const robot::Robot& robot, double heat_safety_factor)
-    : heat_safety_factor_(heat_safety_factor) {
+    : heat_safety_factor_(heat_safety_factor), resistance_rise_per_K_(motor.temperature_coefficient_per_K) {
   const std::array<thermal::Traced, observed::kSignalCount> signals = traced_signals(formula_);
   const thermal::OperatingPoint<thermal::Traced> at = operating_point<thermal::Traced>(motor, robot, signals);
   at.current_rms_A.name(std::array<std::string, 1>{"heating_current_A"});

@@ -72,6 +72,8 @@ class Observer {
   /// True if a law depends on the signal; always true for current, speed and ambient.
   [[nodiscard]] bool uses(observed::Signal signal) const { return is_used_[static_cast<std::size_t>(signal)] != 0; }
   [[nodiscard]] double heat_safety_factor() const { return heat_safety_factor_; }
+  /// Rise of the winding's resistance per kelvin, as a ratio to that at 25 °C.
+  [[nodiscard]] double resistance_rise_per_K() const { return resistance_rise_per_K_; }
 
  private:
   thermal::Formula formula_;
@@ -80,6 +82,7 @@ class Observer {
   std::vector<std::string> state_names_;
   std::array<char, observed::kSignalCount> is_used_{};
   double heat_safety_factor_ = 1.0;
+  double resistance_rise_per_K_ = 0.0;
 };
 
 /// Runs the observer as the generated code does: explicit Euler steps of one period with compensated summation (Kahan 1965). In single

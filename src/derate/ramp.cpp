@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -22,14 +23,22 @@ std::vector<double> places_up_to(std::vector<double> axis, double most) {
 
 double hottest_C(const Derating& derating) { return std::floor(derating.rules.limits.winding_C); }
 
-/// Returns the temperatures at which it suffices to compare bound and ramp. Between two of them the bound is a minimum of concave curves,
-/// because the table's squares are linear there, and the ramp is linear. Above the stator's axis the bound is 0.
+/// Returns the temperatures at which it suffices to compare bound and ramp, ascending. Over the stator the bound is a minimum of concave
+/// curves between the table's breakpoints, because the heat is linear there, and the ramp is linear. Above that axis the bound is 0. Over
+/// the winding the resistance bends the curves, so that the places lie close together.
 std::vector<double> corners_C(const Derating& derating, RampSignal signal) {
-  if (signal == RampSignal::winding) {
-    return derating.table.winding_C;
+  const bool is_stator = signal == RampSignal::stator;
+  std::vector<double> corners = is_stator ? derating.table.stator_C : derating.table.winding_C;
+  corners.push_back(std::floor(derating.options.hottest_ambient_C));
+  if (is_stator) {
+    corners.push_back(std::nextafter(derating.table.stator_C.back(), std::numeric_limits<double>::infinity()));
+  } else {
+    constexpr double kPerKelvin = 10.0;
+    const int parts = static_cast<int>(kPerKelvin * (derating.table.winding_C.back() - derating.table.winding_C.front()));
+    std::ranges::copy(evenly(derating.table.winding_C.front(), derating.table.winding_C.back(), std::max(2, parts)),
+                      std::back_inserter(corners));
   }
-  std::vector<double> corners = derating.table.stator_C;
-  corners.push_back(std::nextafter(corners.back(), std::numeric_limits<double>::infinity()));
+  std::ranges::sort(corners);
   return corners;
 }
 
@@ -40,10 +49,12 @@ struct BoundPoint {
 
 std::vector<BoundPoint> bound_points(const Derating& derating, RampSignal signal) {
   std::vector<BoundPoint> points;
-  std::vector<double> places_C = corners_C(derating, signal);
-  places_C.push_back(std::floor(derating.options.hottest_ambient_C));
-  for (const double place_C : places_C) {
+  for (const double place_C : corners_C(derating, signal)) {
     points.push_back({place_C, ramp_bound_A(derating, signal, place_C)});
+  }
+  // Between two places of the winding's axis a curve is steadily rising or falling, so the lower end is a bound.
+  for (std::size_t i = 0; signal == RampSignal::winding && i + 1 < points.size(); ++i) {
+    points[i].current_A = std::min(points[i].current_A, points[i + 1].current_A);
   }
   return points;
 }

@@ -1,35 +1,29 @@
 // current_table(): computes the breakpoints, then verifies the table at points that are not its own.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "base/copper.h"
 #include "derate/table_places.h"
 
 namespace heatsoak::derate {
 namespace {
 
-/// Rounds down to five digits in single precision. Includes a margin for the rounding of the controller's interpolation.
+/// Rounds down to single precision. Includes a margin for the rounding of the controller's interpolation.
 double rounded_down(double value, double largest_A2) {
-  constexpr int kDigits = 5;
   constexpr double kInterpolation_ratio = 5e-7;
   const double safe = value - kInterpolation_ratio * largest_A2;
-  if (safe == 0.0) {
-    return 0.0;
-  }
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(safe))) + 1 - kDigits);
-  auto single = static_cast<float>(std::floor(safe / unit) * unit);
-  while (single > safe) {
-    single = static_cast<float>(single - unit);
-  }
-  return single;
+  const auto single = static_cast<float>(safe);
+  return single > safe ? std::nextafter(single, std::numeric_limits<float>::lowest()) : single;
 }
 
 void round_down(CurrentTable& table) {
   double largest_A2 = 0.0;
-  for (const double square_A2 : table.square_A2) {
-    largest_A2 = std::max(largest_A2, std::abs(square_A2));
+  for (const double heat_A2 : table.heat_per_ohm_A2) {
+    largest_A2 = std::max(largest_A2, std::abs(heat_A2));
   }
-  std::ranges::transform(table.square_A2, table.square_A2.begin(), [&](double each) { return rounded_down(each, largest_A2); });
+  std::ranges::transform(table.heat_per_ohm_A2, table.heat_per_ohm_A2.begin(), [&](double each) { return rounded_down(each, largest_A2); });
 }
 
 struct CheckPoint {
@@ -103,7 +97,7 @@ struct Cell {
   std::size_t winding = 0;
 };
 
-/// Returns the indices of the squares at the corners of a cell; fewer than eight if an axis has one breakpoint.
+/// Returns the indices of the heats at the corners of a cell; fewer than eight if an axis has one breakpoint.
 std::vector<std::size_t> corners(const CurrentTable& table, const Cell& cell) {
   std::vector<std::size_t> places;
   for (std::size_t i = cell.speed; i < std::min(cell.speed + 2, table.speed_rad_per_s.size()); ++i) {
@@ -135,9 +129,10 @@ double check_table(CurrentTable& table, Barrier& barrier, const std::vector<Chec
     if (shown_A > exact_A(i)) {
       const Cell cell{segment_of(table.speed_rad_per_s, at.speed_rad_per_s), segment_of(table.stator_C, at.stator_C),
                       segment_of(table.winding_C, at.winding_C)};
-      const double excess_A2 = square_of_A2(table, shown_A) - square_of_A2(table, exact_A(i));
+      const double excess_A2 = (square_of_A2(table, shown_A) - square_of_A2(table, exact_A(i))) *
+                               table.resistance_ratio(std::max(at.winding_C, table.winding_C.front()));
       for (const std::size_t corner : corners(table, cell)) {
-        table.square_A2[corner] -= excess_A2;
+        table.heat_per_ohm_A2[corner] -= excess_A2;
       }
     }
   }
@@ -181,25 +176,30 @@ double winding_per_stator_K(CurrentTable table, Barrier& barrier, const BarrierR
   return table.winding_per_stator_K;
 }
 
-/// Raises the bounds to the slopes inside of a cell. The steepest segment, evaluated at the smallest current, is an upper bound.
+/// Raises the bounds to the slopes inside of a cell. The steepest segment, evaluated at the smallest current, is an upper bound: along the
+/// winding a square is a quotient of two linear functions, whose slope is steepest where the resistance is lowest.
 void add_slopes(TableBound& bound, const CurrentTable& table, const Cell& cell) {
   const std::vector<std::size_t> places = corners(table, cell);
-  double least_A2 = table.square_A2[places.front()];
+  double least_A2 = table.square_A2(places.front());
   double most_A2 = least_A2;
   for (const std::size_t place : places) {
-    least_A2 = std::min(least_A2, table.square_A2[place]);
-    most_A2 = std::max(most_A2, table.square_A2[place]);
+    least_A2 = std::min(least_A2, table.square_A2(place));
+    most_A2 = std::max(most_A2, table.square_A2(place));
   }
   if (most_A2 <= 0.0 || least_A2 >= table.most_current_A * table.most_current_A) {
     return;
   }
   const double straight_A2 = table.straight_below_A * table.straight_below_A;
   const double per_square_A = least_A2 < straight_A2 ? 1.0 / table.straight_below_A : 0.5 / std::sqrt(least_A2);
+  const std::size_t windings = table.winding_C.size();
   const auto add = [&](double& slope_A, const std::vector<double>& axis, std::size_t first, std::size_t apart) {
     for (const std::size_t place : places) {
       if (axis.size() > 1 && place / apart % axis.size() == first) {
-        const double change_A2 = std::abs(table.square_A2[place + apart] - table.square_A2[place]);
-        slope_A = std::max(slope_A, per_square_A * change_A2 / (axis[first + 1] - axis[first]));
+        const double ratio = table.resistance_ratio(table.winding_C[place % windings]);
+        const double falling_per_K = apart == 1 ? table.resistance_ratio_per_K * table.square_A2(place) : 0.0;
+        const double heat_slope_A2 =
+            (table.heat_per_ohm_A2[place + apart] - table.heat_per_ohm_A2[place]) / (axis[first + 1] - axis[first]);
+        slope_A = std::max(slope_A, per_square_A * std::abs(heat_slope_A2 - falling_per_K) / ratio);
       }
     }
   };
@@ -219,9 +219,8 @@ void find_slopes(CurrentTable& table) {
     }
   }
   bound.stator_slope_A_per_K = std::max(bound.stator_slope_A_per_K, table.winding_per_stator_K * bound.winding_slope_A_per_K);
-  const double most_A = table.current_of_A(*std::ranges::max_element(table.square_A2));
   bound.speed_slope_A_s_per_rad =
-      std::max(bound.speed_slope_A_s_per_rad, most_A / (table.no_current_speed_rad_per_s - table.most_speed_rad_per_s));
+      std::max(bound.speed_slope_A_s_per_rad, table.largest_A() / (table.no_current_speed_rad_per_s - table.most_speed_rad_per_s));
 }
 
 }  // namespace
@@ -229,6 +228,8 @@ void find_slopes(CurrentTable& table) {
 CurrentTable current_table(const Observer& observer, const BarrierRules& rules, const TableGoal& goal) {
   Barrier barrier(observer, rules);
   CurrentTable table;
+  table.resistance_ratio_per_K = static_cast<float>(observer.resistance_rise_per_K());
+  table.resistance_at_0C_ratio = static_cast<float>(base::resistance_ratio(observer.resistance_rise_per_K(), 0.0));
   table.most_current_A = static_cast<float>(rules.most_current_A);
   table.most_speed_rad_per_s = rules.most_speed_rad_per_s;
   table.no_current_speed_rad_per_s = std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
@@ -238,7 +239,7 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   double grid_goal = 0.97 * goal.shortfall_ratio;
   std::optional<CurrentTable> best;
   for (int i = 0; i < kMostTries; ++i, grid_goal *= kBetter) {
-    place_squares(table, barrier, rules, {grid_goal, goal.most_bytes});
+    place_heats(table, barrier, rules, {grid_goal, goal.most_bytes});
     const std::vector<CheckPoint> points = check_points(table, rules);
     check_table(table, barrier, points);
     round_down(table);
@@ -251,8 +252,8 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
     }
   }
   table = *best;
-  constexpr double kPerMille = 1000.0;
-  table.bound.shortfall_ratio = std::ceil(kPerMille * table.bound.shortfall_ratio) / kPerMille;
+  constexpr double kPerMillion = 1e6;
+  table.bound.shortfall_ratio = std::ceil(kPerMillion * table.bound.shortfall_ratio) / kPerMillion;
   table.winding_per_stator_K = winding_per_stator_K(table, barrier, rules);
   find_slopes(table);
   return table;

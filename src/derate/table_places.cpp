@@ -17,15 +17,18 @@ enum Axis : std::size_t { speed, stator, winding, kAxes };
 using Index = std::array<std::size_t, kAxes>;
 using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< per axis of a table: indices of grid points, ascending
 
-/// Exact squares on a fine grid. Its points are the candidate breakpoints of a table.
+/// Exact heats, as in CurrentTable, on a fine grid. Its points are the candidate breakpoints of a table.
 struct ExactGrid {
   std::array<std::vector<double>, kAxes> points;
-  std::vector<double> square_A2;  ///< [speed][stator][winding]
-  std::size_t limit = 0;          ///< index of the winding's limit on the winding's axis
+  std::vector<double> heat_A2;          ///< [speed][stator][winding]
+  std::vector<double> square_per_heat;  ///< reciprocal of the resistance ratio at every point of the winding's axis
+  std::size_t limit = 0;                ///< index of the winding's limit on the winding's axis
 
   [[nodiscard]] std::size_t place(const Index& at) const {
     return (at[speed] * points[stator].size() + at[stator]) * points[winding].size() + at[winding];
   }
+  /// Squared current at a place of the grid.
+  [[nodiscard]] double square_A2(std::size_t place) const { return heat_A2[place] * square_per_heat[place % points[winding].size()]; }
 };
 
 /// True if the exact current changes with the speed at any of nine pairs of temperatures.
@@ -70,7 +73,7 @@ void add_near_end(std::vector<double>& points, std::initializer_list<double> bel
   points.erase(std::unique(points.begin(), points.end()), points.end());
 }
 
-ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
+ExactGrid exact_grid(const CurrentTable& table, Barrier& barrier, const BarrierRules& rules) {
   constexpr int kSpeedSteps = 10;
   constexpr int kStatorSteps = 16;
   constexpr int kWindingSteps = 40;
@@ -86,11 +89,14 @@ ExactGrid exact_grid(Barrier& barrier, const BarrierRules& rules) {
   add_near_end(grid.points[winding], {2.0, 1.0, 0.5});
   grid.limit = grid.points[winding].size() - 1;
   grid.points[winding].push_back(limit_C + kAboveLimit_K);
+  for (const double winding_C : grid.points[winding]) {
+    grid.square_per_heat.push_back(1.0 / table.resistance_ratio(winding_C));
+  }
   for (const double speed_rad_per_s : grid.points[speed]) {
     for (const double stator_C : grid.points[stator]) {
       for (const double winding_C : grid.points[winding]) {
         const double square_A2 = barrier.square_A2(speed_rad_per_s, stator_C, winding_C);
-        grid.square_A2.push_back(winding_C > limit_C ? std::min(square_A2, 0.0) : square_A2);
+        grid.heat_A2.push_back((winding_C > limit_C ? std::min(square_A2, 0.0) : square_A2) * table.resistance_ratio(winding_C));
       }
     }
   }
@@ -115,8 +121,8 @@ struct CurrentRule {
 std::vector<double> counted_currents_A(const ExactGrid& grid, const CurrentRule& rule) {
   std::vector<double> all;
   const std::size_t windings = grid.points[winding].size();
-  for (std::size_t place = 0; place < grid.square_A2.size(); ++place) {
-    const double square_A2 = grid.square_A2[place];
+  for (std::size_t place = 0; place < grid.heat_A2.size(); ++place) {
+    const double square_A2 = grid.square_A2(place);
     const bool counts = place % windings <= grid.limit && square_A2 >= rule.straight_below_A * rule.straight_below_A;
     all.push_back(counts ? rule.current_A(square_A2) : 0.0);
   }
@@ -147,7 +153,7 @@ std::vector<Segment> segments(const std::vector<std::size_t>& places, const std:
   return all;
 }
 
-/// Squares at chosen breakpoints of the grid, lowered so that the interpolation never exceeds the grid; and their shortfall.
+/// Heats at chosen breakpoints of the grid, lowered so that the interpolation never exceeds the grid; and their shortfall.
 class Fit {
  public:
   /// `counted_A`: counted_currents_A() of grid and rule. The search for the shortfall ends once it exceeds `of_no_use_ratio`.
@@ -156,7 +162,7 @@ class Fit {
     for (const std::size_t i : places_[speed]) {
       for (const std::size_t j : places_[stator]) {
         for (const std::size_t k : places_[winding]) {
-          square_A2_.push_back(grid.square_A2[grid.place({i, j, k})]);
+          heat_A2_.push_back(grid.heat_A2[grid.place({i, j, k})]);
         }
       }
     }
@@ -173,11 +179,11 @@ class Fit {
   }
 
   [[nodiscard]] const Places& places() const { return places_; }
-  [[nodiscard]] const std::vector<double>& square_A2() const { return square_A2_; }
+  [[nodiscard]] const std::vector<double>& heat_A2() const { return heat_A2_; }
   [[nodiscard]] double shortfall_ratio() const { return shortfall_ratio_; }
   [[nodiscard]] const Index& worst() const { return worst_; }
   [[nodiscard]] std::size_t number_count() const {
-    return places_[speed].size() + places_[stator].size() + places_[winding].size() + square_A2_.size();
+    return places_[speed].size() + places_[stator].size() + places_[winding].size() + heat_A2_.size();
   }
 
  private:
@@ -194,7 +200,7 @@ class Fit {
     }
   }
 
-  /// Calls visit(place in the grid, interpolated square, index) for all grid points of a cell.
+  /// Calls visit(place in the grid, interpolated heat, index) for all grid points of a cell.
   template <class Visit>
   void for_each_point(const ExactGrid& grid, const std::array<std::size_t, 8>& corner, const Cell& at, const Visit& visit) const {
     const Segment& along_winding = *at[winding];
@@ -206,7 +212,7 @@ class Fit {
         for (std::size_t k = along_winding.low; k <= along_winding.high; ++k) {
           const double winding_share = along_winding.share[k - along_winding.low];
           const auto along = [&](std::size_t from) {
-            return square_A2_[corner[from]] + winding_share * (square_A2_[corner[from + 1]] - square_A2_[corner[from]]);
+            return heat_A2_[corner[from]] + winding_share * (heat_A2_[corner[from + 1]] - heat_A2_[corner[from]]);
           };
           const double first_A2 = along(0);
           const double low_A2 = first_A2 + stator_share * (along(2) - first_A2);
@@ -218,7 +224,7 @@ class Fit {
     }
   }
 
-  /// Indices of the squares at the corners of a cell; neighbours along the winding are adjacent. Repeated on an axis with one breakpoint.
+  /// Indices of the heats at the corners of a cell; neighbours along the winding are adjacent. Repeated on an axis with one breakpoint.
   [[nodiscard]] std::array<std::size_t, 8> corners(const Index& cell) const {
     std::array<std::size_t, 8> places{};
     for (std::size_t which = 0; which < places.size(); ++which) {
@@ -228,16 +234,16 @@ class Fit {
     return places;
   }
 
-  /// Lowers the corners of a cell by the largest excess over the exact squares in it.
+  /// Lowers the corners of a cell by the largest excess over the exact heats in it.
   void lower(const ExactGrid& grid, const Index& cell, const Cell& at) {
     std::array<std::size_t, 8> corner = corners(cell);
     double excess_A2 = 0.0;
-    for_each_point(grid, corner, at, [&](std::size_t place, double square_A2, const Index& /*point*/) {
-      excess_A2 = std::max(excess_A2, square_A2 - grid.square_A2[place]);
+    for_each_point(grid, corner, at, [&](std::size_t place, double heat_A2, const Index& /*point*/) {
+      excess_A2 = std::max(excess_A2, heat_A2 - grid.heat_A2[place]);
     });
     std::ranges::sort(corner);
     const auto end = std::unique(corner.begin(), corner.end());
-    std::for_each(corner.begin(), end, [&](std::size_t each) { square_A2_[each] -= excess_A2; });
+    std::for_each(corner.begin(), end, [&](std::size_t each) { heat_A2_[each] -= excess_A2; });
   }
 
   void find_shortfall(const ExactGrid& grid, const CurrentRule& rule, const std::vector<double>& counted_A, const Index& cell,
@@ -249,7 +255,8 @@ class Fit {
       return kRounding_ratio * kept_ratio * kept_ratio;
     };
     double least_ratio = least_square_ratio();
-    for_each_point(grid, corners(cell), at, [&](std::size_t place, double square_A2, const Index& point) {
+    for_each_point(grid, corners(cell), at, [&](std::size_t place, double heat_A2, const Index& point) {
+      const double square_A2 = heat_A2 * grid.square_per_heat[point[winding]];
       // Most points are better than the worst one so far, which their squares show without a root.
       if (counted_A[place] == 0.0 || square_A2 >= std::max(straight_A2, least_ratio * counted_A[place] * counted_A[place])) {
         return;
@@ -264,7 +271,7 @@ class Fit {
   }
 
   Places places_;
-  std::vector<double> square_A2_;
+  std::vector<double> heat_A2_;
   double shortfall_ratio_ = 0.0;
   Index worst_{};
 };
@@ -296,18 +303,21 @@ class Search {
   Search(const ExactGrid& grid, const BarrierRules& rules, const TableGoal& goal) : grid_(grid), goal_(goal) {
     double hottest_A2 = 0.0;
     for (std::size_t j = 0; j < grid.points[stator].size(); ++j) {
-      hottest_A2 = std::max(hottest_A2, grid.square_A2[grid.place({0, j, grid.limit})]);
+      hottest_A2 = std::max(hottest_A2, grid.square_A2(grid.place({0, j, grid.limit})));
     }
     constexpr double kShare = 1.0 / 3.0;
     constexpr double kLeast_share = 0.02;
-    rule_ = {three_digits(std::max(kShare * std::sqrt(hottest_A2), kLeast_share * rules.most_current_A)), rules.most_current_A};
+    rule_ = {
+        three_digits(std::max(kShare * std::min(2.0 * rules.most_current_A, std::sqrt(hottest_A2)), kLeast_share * rules.most_current_A)),
+        rules.most_current_A};
     counted_A_ = counted_currents_A(grid, rule_);
   }
 
   [[nodiscard]] double straight_below_A() const { return rule_.straight_below_A; }
 
   [[nodiscard]] Fit best() const {
-    Fit fit = of({std::vector<std::size_t>{0}, {0}, {0, grid_.points[winding].size() - 1}});
+    // The current falls to 0 above the limit, so the table has an edge there.
+    Fit fit = of({std::vector<std::size_t>{0}, {0}, {0, grid_.limit, grid_.points[winding].size() - 1}});
     while (fit.shortfall_ratio() > goal_.shortfall_ratio) {
       std::optional<Fit> next = refined(fit);
       if (!next) {
@@ -436,8 +446,8 @@ class Search {
 
 }  // namespace
 
-void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal) {
-  const ExactGrid grid = exact_grid(barrier, rules);
+void place_heats(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal) {
+  const ExactGrid grid = exact_grid(table, barrier, rules);
   const Search search(grid, rules, goal);
   const Fit fit = search.best();
   const std::array axes{&table.speed_rad_per_s, &table.stator_C, &table.winding_C};
@@ -449,7 +459,7 @@ void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& ru
   }
   // The stator's axis keeps its end even with one breakpoint, because allowed_A() needs it.
   table.stator_C.back() = grid.points[stator].back();
-  table.square_A2 = fit.square_A2();
+  table.heat_per_ohm_A2 = fit.heat_A2();
   table.straight_below_A = search.straight_below_A();
   table.bound.shortfall_ratio = std::min(1.0, fit.shortfall_ratio());
 }

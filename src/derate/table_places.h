@@ -1,4 +1,4 @@
-// Chooses the breakpoints of a derating table and computes the squared currents there.
+// Chooses the breakpoints of a derating table and computes the copper heat of the allowed current there.
 #pragma once
 
 #include "derate/barrier.h"
@@ -6,8 +6,9 @@
 
 namespace heatsoak::derate {
 
-/// Sets axes, squares, straight_below_A and the shortfall relative to a fine grid. Adds breakpoints one by one, each on the axis where it
-/// reduces the largest shortfall most per stored number, and removes unnecessary ones. The table never exceeds the grid's exact squares.
-void place_squares(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal);
+/// Sets axes, heats, straight_below_A and the shortfall relative to a fine grid, for the table's resistance ratio. Adds breakpoints one by
+/// one, each on the axis where it reduces the largest shortfall most per stored number, and removes unnecessary ones. The table never
+/// exceeds the grid's exact heats.
+void place_heats(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal);
 
 }  // namespace heatsoak::derate

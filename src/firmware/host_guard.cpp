@@ -54,7 +54,7 @@ HostGuard::HostGuard(const derate::Derating& derating)
     : speed_rad_per_s_(single(derating.table.speed_rad_per_s)),
       stator_C_(single(derating.table.stator_C)),
       winding_C_(single(derating.table.winding_C)),
-      square_A2_(single(derating.table.square_A2)),
+      heat_per_ohm_A2_(single(derating.table.heat_per_ohm_A2)),
       law_(derating.observer) {
   if (derating.observer.state_count() > robot_core::kMostGuardNodes) {
     throw base::Failure(
@@ -72,6 +72,8 @@ HostGuard::HostGuard(const derate::Derating& derating)
   model_.cold_current_A = table.allowed_A(0.0F, static_cast<float>(table.stator_C.front()), static_cast<float>(table.winding_C.front()));
   model_.heat_ratio = static_cast<float>(derating.observer.heat_safety_factor());
   std::ranges::copy(single(derate::resting_C(derating, derating.observer.rate_steps())), model_.resting_C);
+  model_.table.resistance_at_0C_ratio = static_cast<float>(table.resistance_at_0C_ratio);
+  model_.table.resistance_ratio_per_K = static_cast<float>(table.resistance_ratio_per_K);
   model_.table.most_current_A = static_cast<float>(table.most_current_A);
   model_.table.straight_below_A = static_cast<float>(table.straight_below_A);
   model_.table.most_speed_rad_per_s = static_cast<float>(table.most_speed_rad_per_s);
@@ -89,7 +91,7 @@ HostGuard::HostGuard(const HostGuard& other)
       speed_rad_per_s_(other.speed_rad_per_s_),
       stator_C_(other.stator_C_),
       winding_C_(other.winding_C_),
-      square_A2_(other.square_A2_),
+      heat_per_ohm_A2_(other.heat_per_ohm_A2_),
       plausible_ranges_(other.plausible_ranges_),
       law_(other.law_) {
   point_to_own();
@@ -101,7 +103,7 @@ HostGuard& HostGuard::operator=(const HostGuard& other) {
     speed_rad_per_s_ = other.speed_rad_per_s_;
     stator_C_ = other.stator_C_;
     winding_C_ = other.winding_C_;
-    square_A2_ = other.square_A2_;
+    heat_per_ohm_A2_ = other.heat_per_ohm_A2_;
     plausible_ranges_ = other.plausible_ranges_;
     law_ = other.law_;
     point_to_own();
@@ -113,7 +115,7 @@ void HostGuard::point_to_own() {
   model_.table.speed_rad_per_s = axis(speed_rad_per_s_);
   model_.table.stator_C = axis(stator_C_);
   model_.table.winding_C = axis(winding_C_);
-  model_.table.square_A2 = square_A2_.data();
+  model_.table.heat_per_ohm_A2 = heat_per_ohm_A2_.data();
   for (std::size_t i = 0; i < plausible_ranges_.size(); ++i) {
     const derate::PlausibleRange& from = plausible_ranges_[i];
     model_.plausible_range[i] = {from.is_used, from.low, from.high, from.values.data(), static_cast<int>(from.values.size())};

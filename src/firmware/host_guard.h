@@ -36,7 +36,7 @@ class HostGuard {
   std::vector<float> speed_rad_per_s_;
   std::vector<float> stator_C_;
   std::vector<float> winding_C_;
-  std::vector<float> square_A2_;
+  std::vector<float> heat_per_ohm_A2_;
   std::array<derate::PlausibleRange, derate::observed::kSignalCount> plausible_ranges_;
   mutable Law law_;
 };

@@ -34,12 +34,12 @@ std::string array(std::string_view name, const float* values, int count) {
 
 std::string arrays(const robot_core::GuardModel& guard) {
   const heatsoak_current_table& table = guard.table;
-  const int squares = table.speed_rad_per_s.count * table.stator_C.count * table.winding_C.count;
+  const int heats = table.speed_rad_per_s.count * table.stator_C.count * table.winding_C.count;
   std::string text = array("kSpeed_rad_per_s", table.speed_rad_per_s.points, table.speed_rad_per_s.count) +
                      array("kStator_C", table.stator_C.points, table.stator_C.count) +
                      array("kWinding_C", table.winding_C.points, table.winding_C.count) +
-                     "// Square of the allowed current in A^2 by speed, then stator, then winding.\n" +
-                     array("kSquare_A2", table.square_A2, squares) + "\n// Possible values of an unknown signal.\n";
+                     "// Copper heat of the allowed current in A^2, I^2 * R / R25, by speed, then stator, then winding.\n" +
+                     array("kHeatPerOhm_A2", table.heat_per_ohm_A2, heats) + "\n// Possible values of an unknown signal.\n";
   for (int i = 0; i < robot_core::kGuardSignals; ++i) {
     if (const robot_core::PlausibleRange& plausible_range = guard.plausible_range[i]; plausible_range.is_used) {
       text += array(fmt::format("kPossible_{}", name_of(static_cast<derate::observed::Signal>(i))), plausible_range.possible,
@@ -62,13 +62,14 @@ std::string table(const robot_core::GuardModel& guard) {
   return fmt::format(
       "    .cold_current_A = {},\n    .heat_ratio = {},\n{}    .table = {{.speed_rad_per_s = {{kSpeed_rad_per_s, {}}},\n"
       "              .stator_C = {{kStator_C, {}}},\n              .winding_C = {{kWinding_C, {}}},\n"
-      "              .square_A2 = kSquare_A2,\n              .most_current_A = {},\n              .straight_below_A = {},\n"
+      "              .heat_per_ohm_A2 = kHeatPerOhm_A2,\n              .resistance_at_0C_ratio = {},\n"
+      "              .resistance_ratio_per_K = {},\n              .most_current_A = {},\n              .straight_below_A = {},\n"
       "              .most_speed_rad_per_s = {},\n              .no_current_speed_rad_per_s = {},\n"
       "              .winding_per_stator_K = {}}},\n",
-      float_literal(guard.cold_current_A), float_literal(guard.heat_ratio), resting_temperatures(guard), table.speed_rad_per_s.count, table.stator_C.count,
-      table.winding_C.count, float_literal(table.most_current_A), float_literal(table.straight_below_A),
-      float_literal(table.most_speed_rad_per_s), float_literal(table.no_current_speed_rad_per_s),
-      float_literal(table.winding_per_stator_K));
+      float_literal(guard.cold_current_A), float_literal(guard.heat_ratio), resting_temperatures(guard), table.speed_rad_per_s.count,
+      table.stator_C.count, table.winding_C.count, float_literal(table.resistance_at_0C_ratio), float_literal(table.resistance_ratio_per_K),
+      float_literal(table.most_current_A), float_literal(table.straight_below_A), float_literal(table.most_speed_rad_per_s),
+      float_literal(table.no_current_speed_rad_per_s), float_literal(table.winding_per_stator_K));
 }
 
 std::string plausible_ranges(const robot_core::GuardModel& guard) {

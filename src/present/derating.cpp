@@ -76,12 +76,11 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
   const derate::TableBound& bound = derating.table.bound;
   document.add_note(
       Severity::background,
-      fmt::format(
-          "Table: {} bytes. Its current is never above the exact answer of the network, and at most {:.1f} % below it from {} A up. "
-          "The current changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
-          derating.table.size_bytes(), std::ceil(1000.0 * bound.shortfall_ratio) / 10.0,
-          base::significant(derating.table.straight_below_A, 2), derate::significant_above(bound.winding_slope_A_per_K, 2),
-          derate::significant_above(bound.stator_slope_A_per_K, 2), derate::significant_above(bound.speed_slope_A_s_per_rad, 2)));
+      fmt::format("Table: {} bytes. Its current is never above the exact answer of the network, and at most {} % below it from {} A up. "
+                  "The current changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
+                  derating.table.size_bytes(), derate::significant_above(100.0 * bound.shortfall_ratio, 2),
+                  base::significant(derating.table.straight_below_A, 2), derate::significant_above(bound.winding_slope_A_per_K, 2),
+                  derate::significant_above(bound.stator_slope_A_per_K, 2), derate::significant_above(bound.speed_slope_A_s_per_rad, 2)));
 }
 
 /// Adds the benefit and the possible faults of the sensor, if there is one.

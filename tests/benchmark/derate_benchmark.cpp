@@ -12,7 +12,7 @@ void derate_motor(benchmark::State& state) {
   const motor::Motor motor = ecx_32();
   const robot::Robot robot = twente();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(derate::derate(motor, robot, {}).table.square_A2.data());
+    benchmark::DoNotOptimize(derate::derate(motor, robot, {}).table.heat_per_ohm_A2.data());
   }
 }
 BENCHMARK(derate_motor)->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -26,7 +26,7 @@ void derate_table_alone(benchmark::State& state) {
   rules.most_current_A = 24.0;
   rules.most_speed_rad_per_s = 400.0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(derate::current_table(observer, rules).square_A2.data());
+    benchmark::DoNotOptimize(derate::current_table(observer, rules).heat_per_ohm_A2.data());
   }
 }
 BENCHMARK(derate_table_alone)->Unit(benchmark::kMillisecond);

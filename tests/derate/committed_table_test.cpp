@@ -139,10 +139,11 @@ using Tampered = Committed;
 TEST_F(Tampered, OneCurrentIsFoundAtItsPlace) {
   std::string header = exported_text(*fresh_, "c_header");
   const std::vector<HeaderArray> arrays = header_arrays(header);
-  const auto currents = std::ranges::find_if(arrays, [](const HeaderArray& each) { return each.name.ends_with("32l_48v_square_A2"); });
+  const auto currents =
+      std::ranges::find_if(arrays, [](const HeaderArray& each) { return each.name.ends_with("32l_48v_heat_per_ohm_A2"); });
   ASSERT_NE(currents, arrays.end());
   std::size_t comma = header.find('{', currents->begin);
-  constexpr int kNumber = 3;
+  constexpr int kNumber = 1;
   for (int i = 0; i < kNumber; ++i) {
     comma = header.find(',', comma + 1);
   }
@@ -176,13 +177,34 @@ TEST_F(Tampered, IntegersOfAHeaderAreFoundOrRefused) {
     EXPECT_NE(changed, header) << pattern;
     return changed;
   };
-  EXPECT_GT(compare(read(with("(q15_square\\[\\d+\\] = \\{\\s*(?:-?\\d+, ){3})-?\\d+", "$0132000")), *fresh_).excess.difference_A, 0.5);
-  EXPECT_GT(compare(read(with("(_square,\\s*)\\d+u", "$0199000u")), *fresh_).excess.difference_A, 0.5);
+  EXPECT_GT(compare(read(with("(q15_heat_per_ohm\\[\\d+\\] = \\{\\s*(?:-?\\d+, ){1})-?\\d+", "$0132000")), *fresh_).excess.difference_A,
+            0.5);
+  EXPECT_GT(compare(read(with("(_heat_per_ohm,\\s*)\\d+u", "$0199000u")), *fresh_).excess.difference_A, 0.5);
   EXPECT_GT(compare(read(with("(change\\[0\\] = \\(+int64_t\\)\\w+ \\+ )\\d", "$019")), *fresh_).differing_line, 0);
-  EXPECT_THAT(message_of(with("(q15_square\\[\\d+\\] = \\{\\s*)\\d+,", "$01")), HasSubstr("no whole table of integers"));
-  EXPECT_THAT(message_of(with("(q15_square\\[\\d+\\] = \\{\\s*)\\d+,", "$0140000,")), HasSubstr("no whole table of integers"));
+  EXPECT_THAT(message_of(with("(q15_heat_per_ohm\\[\\d+\\] = \\{\\s*)\\d+,", "$01")), HasSubstr("no whole table of integers"));
+  EXPECT_THAT(message_of(with("(q15_heat_per_ohm\\[\\d+\\] = \\{\\s*)\\d+,", "$0140000,")), HasSubstr("no whole table of integers"));
   EXPECT_THAT(message_of(with("(q15_winding_mC\\[\\d+\\] = \\{\\s*)-?\\d+,", "$011.5,")), HasSubstr("no whole table of integers"));
   EXPECT_THAT(message_of(with("(q15_winding_mC\\[\\d+\\] = \\{\\s*)-?\\d+,", "$01999000,")), HasSubstr("does not increase"));
+}
+
+// Headers of earlier versions store squares, whose reader does not divide by the resistance.
+TEST_F(Tampered, TableOfSquaresIsRefused) {
+  const auto renamed = [](const char* form, const char* from, const char* to) {
+    return std::regex_replace(exported_text(*fresh_, form), std::regex(from), to);
+  };
+  EXPECT_THAT(message_of(renamed("c_header", "_heat_per_ohm_A2", "_square_A2")), HasSubstr("the form of earlier versions"));
+  EXPECT_THAT(message_of(renamed("c_header_q15", "_q15_heat_per_ohm", "_q15_square")), HasSubstr("the form of earlier versions"));
+}
+
+TEST_F(Tampered, ResistanceIsReadAndRefusedUnlessPositive) {
+  const std::string header = exported_text(*fresh_, "c_header");
+  const auto with = [&](const char* name, const char* value) {
+    return std::regex_replace(header, std::regex(fmt::format("(#define \\w+_{}) \\S+\n", name)), fmt::format("$1 {}\n", value));
+  };
+  EXPECT_GT(compare(read(with("RESISTANCE_AT_0C_RATIO", "0.5f")), *fresh_).excess.difference_A, 0.5);
+  EXPECT_THAT(message_of(with("RESISTANCE_AT_0C_RATIO", "-0.5f")), HasSubstr("RESISTANCE_AT_0C_RATIO"));
+  EXPECT_THAT(message_of(with("RESISTANCE_RATIO_PER_K", "-0.001f")), HasSubstr("RESISTANCE_RATIO_PER_K"));
+  EXPECT_THAT(message_of(with("RESISTANCE_RATIO_PER_K", "high")), HasSubstr("RESISTANCE_RATIO_PER_K"));
 }
 
 TEST_F(Tampered, VersionOfTheWriterIsRead) {
@@ -192,7 +214,7 @@ TEST_F(Tampered, VersionOfTheWriterIsRead) {
 // The header is cut before, inside and behind the table.
 TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
   const std::string header = exported_text(*fresh_, "c_header");
-  for (const std::string_view last : {"#ifndef", "#include", "_square_A2[", "_advance("}) {
+  for (const std::string_view last : {"#ifndef", "#include", "_heat_per_ohm_A2[", "_advance("}) {
     const std::size_t cut = header.find('\n', header.find(last));
     ASSERT_NE(cut, std::string::npos) << last;
     EXPECT_THAT(message_of(header.substr(0, cut + 1)), HasSubstr("truncated")) << last;
@@ -203,7 +225,7 @@ TEST_F(Tampered, HeaderThatIsCutOffIsNeverTakenForACsvTable) {
 // An entry that a compiler reads differently than its leading number is no valid table entry.
 TEST_F(Tampered, EntriesAreWholeNumbers) {
   const std::string text = exported_text(*fresh_, "c_header");
-  const std::size_t array = text.find('{', text.find("_square_A2["));
+  const std::size_t array = text.find('{', text.find("_heat_per_ohm_A2["));
   const std::size_t end = text.find(',', array);
   const std::size_t begin = text.find_first_of("0123456789", array);
   for (const char* const entry : {"9.0f * 8.0f", "0x1p9f", "0x63", "1.0f + 98.0f", "9.0f /* x */ * 9", "1.0e", "1.0foo", ""}) {
@@ -239,7 +261,7 @@ TEST_F(Tampered, WhatIsNoTableIsRefused) {
   EXPECT_THAT(message_of("static const float x[2] = {1.0f, 2.0f};\n"), HasSubstr("contains no derating table"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1")),
               HasSubstr("the product of the lengths of its axes"));
-  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_square_A2\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
+  EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_heat_per_ohm_A2\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$1nan,")),
               HasSubstr("a current that is not a finite number"));
   EXPECT_THAT(message_of(std::regex_replace(header, std::regex("(48v_winding_C\\[\\d+\\] = \\{\\s*)[0-9.]+f,"), "$01999.0f,")),
               HasSubstr("does not increase"));

@@ -87,7 +87,7 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
   }
   const Derating one = derate(exact, twente(), few_samples());
   const Derating other = derate(missing, twente(), few_samples());
-  EXPECT_EQ(one.table.square_A2, other.table.square_A2);
+  EXPECT_EQ(one.table.heat_per_ohm_A2, other.table.heat_per_ohm_A2);
   EXPECT_GT(one.observer.heat_safety_factor(), 1.5);
 }
 
@@ -100,7 +100,7 @@ TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
       missing.parameters.at(key).spread.reset();
     }
   }
-  EXPECT_EQ(derate(tiny, twente(), few_samples()).table.square_A2, derate(missing, twente(), few_samples()).table.square_A2);
+  EXPECT_EQ(derate(tiny, twente(), few_samples()).table.heat_per_ohm_A2, derate(missing, twente(), few_samples()).table.heat_per_ohm_A2);
 }
 
 TEST(Derate, KeepsALimitThatIsARangeAtItsLowerEnd) {

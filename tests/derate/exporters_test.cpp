@@ -30,7 +30,7 @@ TEST_P(EveryExporter, SaysWhereItComesFromAndHowSureItIs) {
 
 TEST_P(EveryExporter, RefusesWhatIsNoNumber) {
   Derating broken = ecx_derating();
-  broken.table.square_A2[7] = std::nan("");
+  broken.table.heat_per_ohm_A2[3] = std::nan("");
   EXPECT_THAT(refusal(GetParam(), broken), HasSubstr("is not a number"));
 }
 
@@ -64,16 +64,18 @@ TEST(Exporters, InputHashFollowsTheOptions) {
 
 TEST(JsonExporter, TableAndObserverAreThoseOfTheDerating) {
   const nlohmann::json file = nlohmann::json::parse(exported("json"));
-  EXPECT_EQ(file["schema"], "heatsoak.derating/1");
+  EXPECT_EQ(file["schema"], "heatsoak.derating/2");
   const nlohmann::json& table = file["table"];
   const CurrentTable& real = ecx_derating().table;
-  ASSERT_EQ(table["current_squared_A2"].size(), real.square_A2.size());
-  ASSERT_EQ(table["current_A"].size(), real.square_A2.size());
-  for (std::size_t i = 0; i < real.square_A2.size(); ++i) {
-    EXPECT_LE(table["current_squared_A2"][i].get<double>(), real.square_A2[i]);
-    EXPECT_NEAR(table["current_squared_A2"][i].get<double>(), real.square_A2[i], 1.01e-4);
-    EXPECT_LE(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2[i]));
-    EXPECT_NEAR(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2[i]), 1.01e-4);
+  ASSERT_EQ(table["heat_per_ohm_A2"].size(), real.heat_per_ohm_A2.size());
+  ASSERT_EQ(table["current_A"].size(), real.heat_per_ohm_A2.size());
+  EXPECT_FLOAT_EQ(table["resistance_at_0C_ratio"].get<float>(), static_cast<float>(real.resistance_at_0C_ratio));
+  EXPECT_FLOAT_EQ(table["resistance_ratio_per_K"].get<float>(), static_cast<float>(real.resistance_ratio_per_K));
+  for (std::size_t i = 0; i < real.heat_per_ohm_A2.size(); ++i) {
+    EXPECT_LE(table["heat_per_ohm_A2"][i].get<double>(), real.heat_per_ohm_A2[i]);
+    EXPECT_NEAR(table["heat_per_ohm_A2"][i].get<double>(), real.heat_per_ohm_A2[i], 1.01e-4);
+    EXPECT_LE(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2(i)));
+    EXPECT_NEAR(table["current_A"][i].get<double>(), real.current_of_A(real.square_A2(i)), 1.01e-4);
   }
   const nlohmann::json& closed = file["observer"];
   const auto value = [&](const char* key) { return closed[key].get<double>(); };

@@ -93,10 +93,10 @@ TEST(Ramp, RefusesByName) {
   limited.rules.limits.stator_C = 100.0;
   EXPECT_THAT(message(limited, RampSignal::winding), HasSubstr("moteus cannot express the stator limit of 100 °C"));
   Derating broken = ecx_derating();
-  broken.table.square_A2[3] = std::nan("");
+  broken.table.heat_per_ohm_A2[3] = std::nan("");
   EXPECT_THAT(message(broken, RampSignal::stator), HasSubstr("is not a number"));
   Derating none = ecx_derating();
-  std::ranges::fill(none.table.square_A2, 0.0);
+  std::ranges::fill(none.table.heat_per_ohm_A2, 0.0);
   EXPECT_THAT(message(none, RampSignal::stator), HasSubstr("allows no current"));
 }
 

@@ -151,11 +151,11 @@ TEST(TableBound, SizeAndErrorAreTradedAsAsked) {
   const BarrierRules rules = rules_for(ecx_32());
   const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
   const Observer observer(network, motor.nominal, twente(), 1.6);
-  const CurrentTable fine = current_table(observer, rules, {.shortfall_ratio = 0.01});
+  const CurrentTable fine = current_table(observer, rules, {.shortfall_ratio = 0.001});
   const CurrentTable coarse = current_table(observer, rules, {.shortfall_ratio = 0.1});
   EXPECT_LT(2 * coarse.size_bytes(), fine.size_bytes());
-  const CurrentTable small = current_table(observer, rules, {.shortfall_ratio = 0.002, .most_bytes = 300});
-  EXPECT_LE(small.size_bytes(), 300U);
+  const CurrentTable small = current_table(observer, rules, {.shortfall_ratio = 0.002, .most_bytes = 150});
+  EXPECT_LE(small.size_bytes(), 150U);
   EXPECT_GT(small.bound.shortfall_ratio, 0.002);
 }
 
@@ -189,7 +189,7 @@ int places_of_straight_currents(Barrier& barrier, double stator_C, double least_
 }
 
 // Alternative method: linear interpolation of the current between optimal points.
-TEST(TableBound, SquaresNeedFewerPlacesThanCurrents) {
+TEST(TableBound, HeatsNeedFewerPlacesThanCurrents) {
   constexpr double kGoal = 0.01;
   for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "maxon_ec45_flat_70w_24v"}) {
     const motor::Motor motor = shipped_motor(id);

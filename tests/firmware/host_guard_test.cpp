@@ -21,6 +21,7 @@
 
 #include "derate/exporter.h"
 #include "derate/guarded_motor.h"
+#include "firmware/core_config.h"
 #include "support/skip_reasons.h"
 
 namespace heatsoak::firmware {
@@ -328,7 +329,7 @@ TEST(HostGuard, CopyStandsOnItsOwn) {
   std::vector<Record> records;
   const std::vector<Row> expected = by_host(*original, Play(derating), 500, records);
   EXPECT_NE(copy.model().context, original->model().context);
-  EXPECT_NE(copy.model().table.square_A2, original->model().table.square_A2);
+  EXPECT_NE(copy.model().table.heat_per_ohm_A2, original->model().table.heat_per_ohm_A2);
   EXPECT_NE(assigned.model().plausible_range[0].possible, original->model().plausible_range[0].possible);
   original.reset();
   for (const HostGuard* const each : {&copy, static_cast<const HostGuard*>(&assigned)}) {
@@ -336,6 +337,41 @@ TEST(HostGuard, CopyStandsOnItsOwn) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
       ASSERT_EQ(again[i].bits, expected[i].bits) << i;
     }
+  }
+}
+
+// The squared current is curved between the axis points, which are 115 K apart.
+TEST(HostGuard, TimeToLimitEndsWhereTheTableAllowsOnlyTheLoad) {
+  const HostGuard guard(derating_of(ecx_32()));
+  const robot_core::GuardModel& model = guard.model();
+  for (const float body_C : {40.0F, 80.0F, 110.0F}) {
+    for (const float load_A : {4.0F, 6.0F, 8.0F}) {
+      robot_core::GuardState state;
+      robot_core::start_guard(model, state, body_C);
+      state.heating_K_per_s = 1.0F;
+      state.load_squared_A2 = load_A * load_A;
+      robot_core::seal(state);
+      robot_core::estimate_time_to_limit(model, state, 0.0F);
+      ASSERT_GT(state.time_to_limit_s, 0.0F);
+      EXPECT_NEAR(robot_core::allowed_current_A(model, 0.0F, body_C, body_C + state.time_to_limit_s), load_A, 1e-3F) << body_C;
+    }
+  }
+}
+
+TEST(HostGuard, CoreRefusesATableWithoutAPositiveResistance) {
+  const HostGuard guard(derating_of(ecx_32()));
+  robot_core::GuardModel model = guard.model();
+  robot_core::Config config = make_core_config(twente(), ecx_32().nominal, {});
+  config.guard = &model;
+  robot_core::complete(config);
+  EXPECT_TRUE(robot_core::is_possible(config));
+  for (const float ratio : {-1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    model.table = guard.model().table;
+    model.table.resistance_at_0C_ratio = ratio;
+    EXPECT_FALSE(robot_core::is_possible(config)) << ratio;
+    model.table = guard.model().table;
+    model.table.resistance_ratio_per_K = ratio;
+    EXPECT_FALSE(robot_core::is_possible(config)) << ratio;
   }
 }
 

@@ -16,6 +16,8 @@ std::string constants(const Source& source) {
          define("MOST_STATE_C", kMostState_C) + define("MOST_CURRENT_A", derating.table.most_current_A) +
          define("MOST_SPEED_RAD_PER_S", derating.table.most_speed_rad_per_s) +
          define("NO_CURRENT_SPEED_RAD_PER_S", derating.table.no_current_speed_rad_per_s) +
+         define("RESISTANCE_AT_0C_RATIO", derating.table.resistance_at_0C_ratio) +
+         define("RESISTANCE_RATIO_PER_K", derating.table.resistance_ratio_per_K) +
          define("STRAIGHT_BELOW_A", derating.table.straight_below_A) + define("WINDING_PER_STATOR_K", derating.table.winding_per_stator_K) +
          define("REACHABLE_SPEED_RAD_PER_S", derating.reachable_speed_rad_per_s) +
          define("TORQUE_CONSTANT_NM_PER_A", derating.torque_constant_Nm_per_A) +

@@ -363,13 +363,14 @@ std::string sensed_table(const Source& source, const SensorPlan& plan) {
   const std::string name = source.prefix + "_sensed";
   return "/* Table while the sensor is used. */\n" + table_comment(table) + array(name + "_speed_rad_per_s", table.speed_rad_per_s) +
          array(name + "_stator_C", table.stator_C) + array(name + "_winding_C", table.winding_C) +
-         array(name + "_square_A2", table.square_A2) +
+         array(name + "_heat_per_ohm_A2", table.heat_per_ohm_A2) +
          fmt::format(
              "static const heatsoak_current_table {0}_table = {{\n    {{{0}_speed_rad_per_s, {1}}},\n    {{{0}_stator_C, {2}}},\n"
-             "    {{{0}_winding_C, {3}}},\n    {0}_square_A2,\n    {4},\n    {5},\n    {6},\n    {7},\n    {8}}};\n\n",
-             name, table.speed_rad_per_s.size(), table.stator_C.size(), table.winding_C.size(), literal(table.most_current_A),
-             literal(table.straight_below_A), literal(table.most_speed_rad_per_s), literal(table.no_current_speed_rad_per_s),
-             literal(table.winding_per_stator_K)) +
+             "    {{{0}_winding_C, {3}}},\n    {0}_heat_per_ohm_A2,\n    {4},\n    {5},\n    {6},\n    {7},\n    {8},\n    {9},\n    "
+             "{10}}};\n\n",
+             name, table.speed_rad_per_s.size(), table.stator_C.size(), table.winding_C.size(), literal(table.resistance_at_0C_ratio),
+             literal(table.resistance_ratio_per_K), literal(table.most_current_A), literal(table.straight_below_A),
+             literal(table.most_speed_rad_per_s), literal(table.no_current_speed_rad_per_s), literal(table.winding_per_stator_K)) +
          fmt::format(
              "static inline float {0}_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) {{\n"
              "  const heatsoak_row row = heatsoak_find_row(&{0}_table, speed_rad_per_s, stator_C);\n"

@@ -281,12 +281,13 @@ std::string table_text(const QuantisedTable& table, const std::string& prefix) {
   return integers("int32_t", prefix + "_speed_mrad_per_s", widened(table.speed_mrad_per_s)) +
          integers("int32_t", prefix + "_stator_mC", widened(table.stator_mC)) +
          integers("int32_t", prefix + "_winding_mC", widened(table.winding_mC)) + "/* by speed, then stator, then winding */\n" +
-         integers("int16_t", prefix + "_square", widened(table.square)) +
+         integers("int16_t", prefix + "_heat_per_ohm", widened(table.heat)) +
          fmt::format(
              "static const heatsoak_integer_table {0}_table = {{\n    {{{0}_speed_mrad_per_s, {1}}},\n    {{{0}_stator_mC, {2}}},\n"
-             "    {{{0}_winding_mC, {3}}},\n    {0}_square,\n    {4}u, {5}, {6}, {7}, {8}, {9}}};\n\n",
-             prefix, table.speed_mrad_per_s.size(), table.stator_mC.size(), table.winding_mC.size(), table.unit_mA2, table.most_current_mA,
-             table.straight_below_mA, table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
+             "    {{{0}_winding_mC, {3}}},\n    {0}_heat_per_ohm,\n    {4}u, {5}, {6}, {7}, {8}, {9}, {10}, {11}}};\n\n",
+             prefix, table.speed_mrad_per_s.size(), table.stator_mC.size(), table.winding_mC.size(), table.unit_mA2,
+             table.resistance_at_first, table.resistance_per_mK, table.most_current_mA, table.straight_below_mA,
+             table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
 }
 
 /// Generates the function that computes each node's change over a period, in 2^-kStoredBits K, with the heat added for rounding.

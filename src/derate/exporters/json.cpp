@@ -14,7 +14,7 @@ std::string write_json(const Derating& derating) {
 
 ExporterType json() {
   return {.name = {},
-          .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/1)",
+          .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/2)",
           .write = write_json};
 }
 

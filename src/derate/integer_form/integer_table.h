@@ -15,8 +15,10 @@ typedef struct {
   heatsoak_integer_axis speed_mrad_per_s;
   heatsoak_integer_axis stator_mC;
   heatsoak_integer_axis winding_mC;
-  const int16_t *square; /* [speed][stator][winding] in unit_mA2; negative: no current is too much already */
+  const int16_t *heat; /* [speed][stator][winding], I^2 * R / R25 in unit_mA2; negative: no current is too much already */
   uint32_t unit_mA2;
+  int32_t resistance_at_first; /* of the winding at its first place, as a ratio to that at 25 degC, in 2^-20 */
+  int32_t resistance_per_mK;   /* in 2^-40 */
   int32_t most_current_mA;
   int32_t straight_below_mA; /* a smaller current is square/straight_below, so that it falls to 0 with a finite slope */
   int32_t most_speed_mrad_per_s;
@@ -51,9 +53,9 @@ static inline int32_t heatsoak_integer_between(const heatsoak_integer_axis *axis
   return low + (int32_t)heatsoak_floor_quotient(((int64_t)high - low) * part, whole);
 }
 
-/* Square of the current at one winding temperature, in unit_mA2. */
-static inline int32_t heatsoak_integer_square(const heatsoak_integer_table *table, int32_t speed_mrad_per_s, int32_t stator_mC,
-                                              int32_t winding_mC) {
+/* Copper heat of the current per ohm at 25 degC, in unit_mA2. */
+static inline int32_t heatsoak_integer_heat(const heatsoak_integer_table *table, int32_t speed_mrad_per_s, int32_t stator_mC,
+                                            int32_t winding_mC) {
   const int32_t windings = table->winding_mC.count;
   const int32_t stators = table->stator_mC.count;
   int32_t speed = speed_mrad_per_s;
@@ -69,7 +71,7 @@ static inline int32_t heatsoak_integer_square(const heatsoak_integer_table *tabl
     int32_t b;
     for (b = 0; (b < 2) && ((j + b) < stators); ++b) {
       const int32_t at = ((((i + a) * stators) + j + b) * windings) + k;
-      at_stator[b] = heatsoak_integer_between(&table->winding_mC, k, winding, table->square[at], table->square[at + 1]);
+      at_stator[b] = heatsoak_integer_between(&table->winding_mC, k, winding, table->heat[at], table->heat[at + 1]);
     }
     at_speed[a] = (stators > 1) ? heatsoak_integer_between(&table->stator_mC, j, stator, at_stator[0], at_stator[1]) : at_stator[0];
   }
@@ -97,23 +99,26 @@ static inline int32_t heatsoak_integer_allowed_mA(const heatsoak_integer_table *
   const int32_t first_winding_mC = table->winding_mC.points[0];
   const int64_t straight_mA = table->straight_below_mA;
   int64_t counted_mC = winding_mC;
+  int64_t resistance;
   int64_t square_mA2;
   int64_t current_mA;
-  int32_t square;
+  int32_t heat;
+  if (winding_mC < first_winding_mC) {
+    counted_mC = first_winding_mC;
+  }
   if (stator_mC > last_stator_mC) {
-    if (winding_mC < first_winding_mC) {
-      counted_mC = first_winding_mC;
-    }
     counted_mC += (int64_t)table->winding_per_stator_K * ((int64_t)stator_mC - last_stator_mC);
   }
   if ((speed_mrad_per_s >= table->no_current_speed_mrad_per_s) || (counted_mC > table->winding_mC.points[table->winding_mC.count - 1])) {
     return 0;
   }
-  square = heatsoak_integer_square(table, speed_mrad_per_s, stator_mC, (int32_t)counted_mC);
-  if (square <= 0) {
+  heat = heatsoak_integer_heat(table, speed_mrad_per_s, stator_mC, (int32_t)counted_mC);
+  if (heat <= 0) {
     return 0;
   }
-  square_mA2 = (int64_t)square * (int64_t)table->unit_mA2;
+  /* A ratio in 2^-20, rounded up. The product fits in 64 bits for heats up to 8e6 A^2. */
+  resistance = table->resistance_at_first + (((counted_mC - first_winding_mC) * table->resistance_per_mK) / 1048576) + 1;
+  square_mA2 = (((int64_t)heat * (int64_t)table->unit_mA2) * 1048576) / resistance;
   current_mA =
       (square_mA2 < (straight_mA * straight_mA)) ? (square_mA2 / straight_mA) : (int64_t)heatsoak_integer_root((uint64_t)square_mA2);
   current_mA = (current_mA < table->most_current_mA) ? current_mA : table->most_current_mA;

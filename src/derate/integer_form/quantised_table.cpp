@@ -7,6 +7,8 @@ namespace heatsoak::derate::integer_form {
 namespace {
 
 constexpr double kPerUnit = 1000.0;
+constexpr int kRatioBits = 20;
+constexpr int kRiseBits = 40;
 
 std::int32_t thousandths_down(double value) { return static_cast<std::int32_t>(std::floor(kPerUnit * value)); }
 std::int32_t thousandths_up(double value) { return static_cast<std::int32_t>(std::ceil(kPerUnit * value)); }
@@ -23,20 +25,27 @@ QuantisedTable::QuantisedTable(const CurrentTable& exact)
     : speed_mrad_per_s(axis_of(exact.speed_rad_per_s)),
       stator_mC(axis_of(exact.stator_C)),
       winding_mC(axis_of(exact.winding_C)),
+      resistance_at_first(static_cast<std::int32_t>(std::ceil(std::ldexp(exact.resistance_ratio(exact.winding_C.front()), kRatioBits)))),
+      resistance_per_mK(static_cast<std::int32_t>(std::ceil(std::ldexp(exact.resistance_ratio_per_K / kPerUnit, kRiseBits)))),
       most_current_mA(thousandths_down(exact.most_current_A)),
       straight_below_mA(thousandths_up(exact.straight_below_A)),
       most_speed_mrad_per_s(thousandths_down(exact.most_speed_rad_per_s)),
       no_current_speed_mrad_per_s(thousandths_down(exact.no_current_speed_rad_per_s)),
       winding_per_stator_K(static_cast<std::int32_t>(std::ceil(exact.winding_per_stator_K))) {
   constexpr double kMost = 32767.0;
-  double largest_A2 = 0.0;
-  for (const double square_A2 : exact.square_A2) {
-    largest_A2 = std::max(largest_A2, std::abs(square_A2));
+  constexpr double kMostHeat_A2 = 8e6;  // the reader's product fits in 64 bits; a lower heat is on the safe side
+  std::vector<double> heats_mA2;
+  for (const double heat_A2 : exact.heat_per_ohm_A2) {
+    heats_mA2.push_back(kPerUnit * kPerUnit * std::min(heat_A2, kMostHeat_A2));
   }
-  unit_mA2 = static_cast<std::uint32_t>(std::ceil(kPerUnit * kPerUnit * largest_A2 / (kMost - 1.0)));
-  for (const double square_A2 : exact.square_A2) {
+  double largest_mA2 = 0.0;
+  for (const double heat_mA2 : heats_mA2) {
+    largest_mA2 = std::max(largest_mA2, std::abs(heat_mA2));
+  }
+  unit_mA2 = static_cast<std::uint32_t>(std::ceil(largest_mA2 / (kMost - 1.0)));
+  for (const double heat_mA2 : heats_mA2) {
     // Subtract one unit, because the breakpoints are rounded to thousandths.
-    square.push_back(static_cast<std::int16_t>(std::floor(kPerUnit * kPerUnit * square_A2 / unit_mA2) - 1.0));
+    heat.push_back(static_cast<std::int16_t>(std::floor(heat_mA2 / unit_mA2) - 1.0));
   }
 }
 
@@ -47,8 +56,10 @@ heatsoak_integer_table QuantisedTable::table() const {
   return {.speed_mrad_per_s = axis(speed_mrad_per_s),
           .stator_mC = axis(stator_mC),
           .winding_mC = axis(winding_mC),
-          .square = square.data(),
+          .heat = heat.data(),
           .unit_mA2 = unit_mA2,
+          .resistance_at_first = resistance_at_first,
+          .resistance_per_mK = resistance_per_mK,
           .most_current_mA = most_current_mA,
           .straight_below_mA = straight_below_mA,
           .most_speed_mrad_per_s = most_speed_mrad_per_s,
@@ -65,14 +76,17 @@ CurrentTable QuantisedTable::in_units() const {
   CurrentTable exact{.speed_rad_per_s = in_ones(speed_mrad_per_s),
                      .stator_C = in_ones(stator_mC),
                      .winding_C = in_ones(winding_mC),
-                     .square_A2 = {},
+                     .heat_per_ohm_A2 = {},
+                     .resistance_at_0C_ratio = 0.0,
+                     .resistance_ratio_per_K = std::ldexp(kPerUnit * resistance_per_mK, -kRiseBits),
                      .most_current_A = most_current_mA / kPerUnit,
                      .straight_below_A = straight_below_mA / kPerUnit,
                      .most_speed_rad_per_s = most_speed_mrad_per_s / kPerUnit,
                      .no_current_speed_rad_per_s = no_current_speed_mrad_per_s / kPerUnit,
                      .winding_per_stator_K = static_cast<double>(winding_per_stator_K)};
-  for (const std::int16_t each : square) {
-    exact.square_A2.push_back(static_cast<double>(each) * unit_mA2 / (kPerUnit * kPerUnit));
+  exact.resistance_at_0C_ratio = std::ldexp(1.0 * resistance_at_first, -kRatioBits) - exact.resistance_ratio(exact.winding_C.front());
+  for (const std::int16_t each : heat) {
+    exact.heat_per_ohm_A2.push_back(static_cast<double>(each) * unit_mA2 / (kPerUnit * kPerUnit));
   }
   return exact;
 }

@@ -18,7 +18,7 @@ constexpr float kMost = 999.0F;  ///< the core treats more than 1000 as a corrup
 
 derate::Derating scaled(derate::Derating exact, double ratio) {
   derate::CurrentTable& table = exact.table;
-  std::ranges::transform(table.square_A2, table.square_A2.begin(), [ratio](double square_A2) { return ratio * ratio * square_A2; });
+  std::ranges::transform(table.heat_per_ohm_A2, table.heat_per_ohm_A2.begin(), [ratio](double heat_A2) { return ratio * ratio * heat_A2; });
   table.straight_below_A *= ratio;
   table.most_current_A *= ratio;
   return exact;
@@ -69,7 +69,7 @@ Limiter::Limiter(const derate::Derating& exact, double resistance_ratio)
 void Limiter::set_table(const std::vector<float>& body, const std::vector<double>& current_A) {
   constexpr float kAnyWinding_C = 1000.0F;
   constexpr float kAnySpeed_rad_per_s = 1e6F;
-  constexpr int kParts = 32;  // the table interpolates squares of the current linearly, these limiters interpolate the current
+  constexpr int kParts = 32;  // the table interpolates heats linearly, these limiters interpolate the current
   speed_rad_per_s_ = {0.0F};
   winding_C_ = {0.0F, kAnyWinding_C};
   for (std::size_t i = 0; i + 1 < body.size(); ++i) {
@@ -85,7 +85,9 @@ void Limiter::set_table(const std::vector<float>& body, const std::vector<double
   table.speed_rad_per_s = axis(speed_rad_per_s_);
   table.stator_C = axis(body_);
   table.winding_C = axis(winding_C_);
-  table.square_A2 = square_A2_.data();
+  table.heat_per_ohm_A2 = square_A2_.data();
+  table.resistance_at_0C_ratio = 1.0F;
+  table.resistance_ratio_per_K = 0.0F;
   table.straight_below_A = 1e-3F;
   table.most_current_A = static_cast<float>(resistance_ratio_ * *std::ranges::max_element(current_A));
   table.most_speed_rad_per_s = kAnySpeed_rad_per_s;

@@ -6,17 +6,16 @@ namespace {
 using robot_core::Config;
 
 constexpr int kStators = 2;
-constexpr int kWindings = 8;
+constexpr int kWindings = 3;
 constexpr float kMostCurrent_A = 23.1481476F;
 constexpr float kMostSpeed_rad_per_s = 419.207306F;
 
 // Calculated by `heatsoak derate`; for this motor the table does not depend on the speed.
 constexpr float kSpeed_rad_per_s[] = {0.0F};
 constexpr float kStator_C[kStators] = {40.0F, 155.0F};
-constexpr float kWinding_C[kWindings] = {40.0F, 74.5F, 97.5F, 123.5F, 140.5F, 149.5F, 155.0F, 158.0F};
-constexpr float kSquare_A2[kStators * kWindings] = {
-    299.01F, 187.74F, 128.79F, 69.194F, 35.735F, 18.763F, 8.8409F,     -0.00014951F,
-    286.41F, 176.56F, 118.39F, 59.561F, 26.542F, 9.7872F, -0.0073453F, -5.2682F,
+constexpr float kWinding_C[kWindings] = {40.0F, 155.0F, 158.0F};
+constexpr float kHeatPerOhm_A2[kStators * kWindings] = {
+    320.0233F, 13.33415F, -0.00017F, 306.689F, -0.00017F, -8.00075F,
 };
 
 constexpr float kPossibleCurrent_A[] = {kMostCurrent_A};
@@ -42,13 +41,15 @@ constexpr robot_core::GuardModel make_guard() {
   guard.winding_limit_C = 155.0F;
   guard.hottest_ambient_C = 40.0F;
   guard.most_current_A = kMostCurrent_A;
-  guard.cold_current_A = 17.2919F;
+  guard.cold_current_A = 17.3878F;
   guard.heat_ratio = kSafetyFactor;
   guard.resting_C[0] = guard.resting_C[1] = 40.01F;
   guard.table = {.speed_rad_per_s = {kSpeed_rad_per_s, 1},
                  .stator_C = {kStator_C, kStators},
                  .winding_C = {kWinding_C, kWindings},
-                 .square_A2 = kSquare_A2,
+                 .heat_per_ohm_A2 = kHeatPerOhm_A2,
+                 .resistance_at_0C_ratio = 0.9025F,
+                 .resistance_ratio_per_K = 0.0039F,
                  .most_current_A = kMostCurrent_A,
                  .straight_below_A = 0.992F,
                  .most_speed_rad_per_s = kMostSpeed_rad_per_s,
