@@ -111,6 +111,43 @@ TEST(SignalTable, OptionalQuantitiesAreUnknownWhereTheLogHasNoValue) {
   }
 }
 
+/// A logger may write the hours of running once and a temperature every 30 s. Rows between are interpolated; none of them is lost.
+TEST(SignalTable, SignalsLoggedLessOftenAreInterpolated) {
+  constexpr std::size_t kRows = 301;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  recording::Recording log;
+  log.name = "log";
+  log.run_begins = {0};
+  std::vector<double> age_h(kRows, unknown), neighbour_C(kRows, unknown), wind_m_per_s(kRows, unknown), stator_C;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    log.time_s.push_back(static_cast<double>(row));
+    stator_C.push_back(30.0 + 0.1 * static_cast<double>(row % 3));
+    if (row % 30 == 0) {
+      neighbour_C[row] = 40.0 + 0.1 * static_cast<double>(row);
+      wind_m_per_s[row] = 0.01 * static_cast<double>(row);
+    }
+  }
+  age_h[0] = 12.0;
+  log.channels = {{*recording::quantity_named("age_h"), age_h},
+                  {*recording::quantity_named("neighbour_C"), neighbour_C},
+                  {*recording::quantity_named("vehicle_speed_m_per_s"), wind_m_per_s},
+                  {*recording::quantity_named("stator_C"), stator_C}};
+  const MeasuredRunOptions options{.needed = {thermal::Signal::age, thermal::Signal::neighbour_temperature, thermal::Signal::vehicle_speed},
+                                   .ambient_C = 25.0};
+  const LogRows rows(log, options);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const thermal::OperatingPoint<double> at = rows.at(row);
+    EXPECT_EQ(at.age_h, 12.0) << row;
+    EXPECT_TRUE(at.knows(thermal::kNeighbour)) << row;
+    EXPECT_NEAR(at.neighbour_C, 40.0 + 0.1 * static_cast<double>(row), 1e-9) << row;
+    EXPECT_NEAR(at.vehicle_speed_m_per_s, 0.01 * static_cast<double>(row), 1e-9) << row;
+  }
+  const MeasuredRuns runs = measured_runs(log, options);
+  ASSERT_EQ(runs.runs.size(), 1U);
+  EXPECT_EQ(runs.runs[0].time_s.back(), log.time_s.back());
+  EXPECT_TRUE(runs.notes.empty());
+}
+
 /// No default of a temperature is safe: a law with a wrong one conducts heat to a body that is not there. The ambient temperature is the
 /// exception, because every run has one.
 TEST(SignalTable, TemperaturesAreOptional) {
