@@ -1,5 +1,7 @@
 #include "calibration/admission.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,8 +9,10 @@
 #include "base/collected_failures.h"
 #include "base/copper.h"
 #include "base/diagnostic.h"
+#include "base/quantity.h"
 #include "base/unknown.h"
 #include "calibration/motor_model.h"
+#include "estimation/log_rows.h"
 #include "estimation/measured_run.h"
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
@@ -195,6 +199,21 @@ void late_answers(const motor::Motor& motor, const recording::Recording& recordi
   }
 }
 
+/// Returns the problem with the first negative operating hours of a log. They are no outlier that may be left out: the clock is wrong.
+std::optional<base::Diagnostic> negative_age(const recording::Recording& recording) {
+  const std::string_view column = estimation::column_of(thermal::Signal::age);
+  const recording::Channel* const channel = recording.find(column);
+  for (std::size_t row = 0; channel != nullptr && row < recording.rows(); ++row) {
+    if (channel->values[row] < 0.0) {
+      const int line = row < recording.line.size() ? recording.line[row] : 0;
+      return base::Diagnostic{{recording.file.string(), line},
+                              std::string(column),
+                              fmt::format("is {} h; expected operating hours of 0 or more", base::significant(channel->values[row], 3))};
+    }
+  }
+  return std::nullopt;
+}
+
 bool has_it(const std::vector<recording::Suspicion>& some, const recording::Suspicion& wanted) {
   return std::ranges::any_of(some, [&wanted](const recording::Suspicion& each) { return recording::have_one_subject(wanted, each); });
 }
@@ -265,8 +284,11 @@ class Admitting {
         lacking_.push_back(std::move(each));
       }
     }
+    if (std::optional<base::Diagnostic> negative = negative_age(recording)) {
+      lacking_.push_back(*std::move(negative));
+    }
     if (!has_any<recording::NoHeatInput>(known)) {
-      without_source_.attempt([&] { return heat_input_of(motor_, {&recording, 1}, false); });
+      without_source_.attempt([&] { return heat_input_of(motor_, {&recording, 1}); });
     }
   }
 

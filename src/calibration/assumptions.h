@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimation/findings.h"
+#include "motor/fit_table.h"
 
 namespace heatsoak::calibration {
 
@@ -41,7 +42,9 @@ struct SensorUnused {
 struct SignalsMissing {
   std::vector<thermal::Signal> signals;  ///< at least one
   std::string effect;
-  std::string recording;  ///< name of the log; empty: no log has them
+  std::string recording = {};  ///< name of the log; empty: no log has them
+  bool is_unread = false;      ///< the current is logged but not read, because the heat comes from another input
+  bool is_unused = false;      ///< the effect does not act without all of its signals
 };
 /// Value of the motor file that is not fitted, and why.
 using HeldValue = std::variant<ResistanceHeld, NoLoadCurrentUnused, NoLoadCurrentHeld, HeatShareHeld, EffectHeld, SensorHeld, SensorUnused>;
@@ -55,7 +58,13 @@ struct BandIncludesLossAtSpeed {
 struct BandIsEstimated {
   std::string motor;
 };
+/// Recordings lack the heat input for which the parameters of the model hold; the heat comes from another one.
+struct HeatInputLacking {
+  motor::HeatInput of_model = motor::HeatInput::current;
+  motor::HeatInput used = motor::HeatInput::current;
+  std::vector<std::string> recordings;  ///< those without it, at least one
+};
 /// Assumption of a forecast.
-using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, estimation::RunNote>;
+using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, estimation::RunNote>;
 
 }  // namespace heatsoak::calibration

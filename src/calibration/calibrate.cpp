@@ -67,13 +67,14 @@ class Calibrating {
     setup_ = forecast_setup(motor, recordings_);
     all_.effects = setup_.motor.effects;
     all_.motor_model = motor_model(setup_.motor, setup_.heat, setup_.has_speed);
-    const double most_loss_W = all_.motor_model.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
+    const double most_loss_W = is_by_current(setup_.heat) ? most_loss_at_speed_W(motor) : 0.0;
+    if (std::optional<HeatInputLacking> lacking = lacking_heat_input(motor, recordings_, {}, setup_.heat)) {
+      all_.findings.emplace_back(*std::move(lacking));
+    }
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.findings));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.findings));
     estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);
-    if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(how.columns, recordings_)) {
-      all_.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
-    }
+    std::ranges::move(estimation::columns_lacking(how.columns, recordings_), std::back_inserter(all_.findings));
     std::ranges::move(missing_signals(motor, recordings_, how), std::back_inserter(all_.findings));
     how.needed = all_.motor_model.needed;
     how.ambient_C = options_.ambient_C;
@@ -82,7 +83,7 @@ class Calibrating {
     std::ranges::move(notes, std::back_inserter(all_.findings));
     std::ranges::transform(recordings_, std::back_inserter(all_.fitted), recording::name_and_fingerprint);
     all_.training = motor.fit ? motor.fit->training : motor::TrainingRange{};
-    widen(all_.training, recordings_);
+    widen(all_.training, recordings_, setup_.heat);
     if (most_loss_W > 0.0 && std::ranges::any_of(all_.runs, turns_unseen)) {
       open_loss_at_speed(all_.motor_model, motor);
       setup_.opens_loss_at_speed = true;
@@ -160,8 +161,8 @@ class Calibrating {
     if (holdout_.empty()) {
       return;
     }
-    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false}).runs;
-    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_});
+    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false, setup_.heat}).runs;
+    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_, setup_.heat});
     for (const PredictionNote& note : after.notes) {
       std::visit([this](const auto& each) { all_.findings.emplace_back(each); }, note);
     }
@@ -448,6 +449,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
   fit.motor = motor.id;
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
+  fit.heat_input = calibration.motor_model.heat;
   fit.training = calibration.training;
   fit.extensions = motor.fit ? motor.fit->extensions : std::vector<std::string>{};
   fit.extensions.insert(fit.extensions.end(), extensions.begin(), extensions.end());

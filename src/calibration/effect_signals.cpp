@@ -19,7 +19,7 @@ std::vector<EffectNeeds> needs_of(const estimation::Model& model) {
 std::vector<EffectNeeds> needs_of(const motor::Motor& motor) {
   std::vector<EffectNeeds> all;
   for (const motor::MotorEffect& effect : motor.effects) {
-    all.push_back({effect.name, effect.type->needed_with(effect.values())});
+    all.push_back({effect.name, effect.type->needed_with(effect.values()), is_remaining_loss(effect)});
   }
   return all;
 }
@@ -28,12 +28,12 @@ EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const
                              const estimation::MeasuredRunOptions& how) {
   std::set<thermal::Signal> logged;
   for (const recording::Recording& each : recordings) {
-    const std::vector<thermal::Signal> signals = estimation::signals_of(each, how.torque);
+    const std::vector<thermal::Signal> signals = estimation::signals_of(each, how);
     logged.insert(signals.begin(), signals.end());
   }
-  if (how.is_heat_input_power) {
-    logged.erase(thermal::Signal::current);
-  }
+  const bool is_unread = how.ignores_current && std::ranges::any_of(recordings, [](const recording::Recording& each) {
+                           return estimation::has_signal(each, thermal::Signal::current);
+                         });
   std::set<thermal::Signal> found;
   EffectSignals all;
   for (const EffectNeeds& each : needs) {
@@ -46,7 +46,8 @@ EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const
       }
     }
     if (!lacking.empty()) {
-      all.missing.push_back({std::move(lacking), each.effect, {}});
+      const bool lacks_current = std::ranges::find(lacking, thermal::Signal::current) != lacking.end();
+      all.missing.push_back({std::move(lacking), each.effect, {}, is_unread && lacks_current, each.needs_all});
     }
   }
   all.found.assign(found.begin(), found.end());

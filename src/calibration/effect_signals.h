@@ -15,6 +15,7 @@ namespace heatsoak::calibration {
 struct EffectNeeds {
   std::string effect;
   std::vector<thermal::Signal> signals;
+  bool needs_all = false;  ///< it does not act if one of them is missing
 };
 
 /// Returns the needs of all effects of the network.
@@ -27,7 +28,7 @@ struct EffectSignals {
   std::vector<SignalsMissing> missing;  ///< effects, each with the signals that no recording has
 };
 
-/// `how`: options that the logs are read with; if the input power is the heat, no current counts as logged.
+/// `how`: options that the logs are read with.
 EffectSignals effect_signals(std::span<const EffectNeeds> needs, std::span<const recording::Recording> recordings,
                              const estimation::MeasuredRunOptions& how);
 

@@ -49,19 +49,25 @@ double implicit_power_share(const motor::Motor& motor) {
   return std::max(0.0, share);
 }
 
-bool all_have(std::span<const recording::Recording> recordings, thermal::Signal signal, const estimation::ShaftTorque& torque = {}) {
-  return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return estimation::has_signal(each, signal, torque); });
+/// Returns the motor with the effects that act with this heat input. Without a logged current, a remaining_loss would be the whole loss,
+/// in addition to that of the input power; without the balance, it would act beside the no-load loss.
+motor::Motor with_acting_effects(motor::Motor motor, HeatInput heat) {
+  if (heat != HeatInput::power_balance) {
+    std::erase_if(motor.effects, is_remaining_loss);
+  }
+  return motor;
 }
 
 class ModelBuilder {
  public:
-  ModelBuilder(const motor::Motor& motor, HeatInput heat, bool with_speed) : motor_(motor), with_speed_(with_speed) {
+  ModelBuilder(const motor::Motor& motor, HeatInput heat, bool with_speed)
+      : motor_(with_acting_effects(motor, heat)), with_speed_(with_speed) {
     all_.heat = heat;
-    all_.model.network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+    all_.model.network = motor::datasheet_network(motor_, motor::nominal_sample(motor_));
     if (heat == HeatInput::input_power) {
       // This is the only loss: the copper loss is 0 without a current, and the no-load loss is set to 0 below.
       all_.model.network.add_effect(std::string(kImplicitPowerLoss), *thermal::find_effect("input_power_loss"),
-                                    std::vector<std::string>{"winding"}, std::vector<double>{implicit_power_share(motor)});
+                                    std::vector<std::string>{"winding"}, std::vector<double>{implicit_power_share(motor_)});
       // An estimated no-load current is too uncertain for this split.
       if (with_speed && motor.nominal.no_load_current_A > 0.0 &&
           motor.parameters.find("no_load_current")->second.origin != base::Origin::estimated) {
@@ -69,7 +75,7 @@ class ModelBuilder {
       }
     }
     all_.model.values = all_.model.network.values();
-    if (heat != HeatInput::current) {
+    if (!is_by_current(heat)) {
       all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
     }
     all_.model.flux_nodes = {all_.model.network.node("winding"), all_.model.network.node("stator")};
@@ -267,7 +273,7 @@ class ModelBuilder {
   }
 
   static constexpr Eigen::Index kMostFree = 64;
-  const motor::Motor& motor_;
+  const motor::Motor motor_;
   bool with_speed_;
   MotorModel all_;
 };
@@ -306,9 +312,9 @@ estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput 
   constexpr double kLongest_s = 2.0;
   estimation::MeasuredRunOptions how;
   how.longest_step_s = std::clamp(motor.nominal.thermal_time_constant_winding_s / 10.0, kShortest_s, kLongest_s);
-  how.is_heat_input_power = heat == HeatInput::input_power;
+  how.ignores_current = heat == HeatInput::input_power || heat == HeatInput::torque;
   // A current from the torque would count the copper loss twice.
-  if (!how.is_heat_input_power) {
+  if (heat != HeatInput::input_power) {
     how.torque = shaft_torque_of(motor);
   }
   how.least_current_A = least_driving_current_A(motor);
@@ -324,42 +330,73 @@ estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput 
   return how;
 }
 
-HeatInput heat_input_for(std::span<const recording::Recording> recordings, const estimation::ShaftTorque& torque) {
-  if (all_have(recordings, thermal::Signal::current)) {
-    return HeatInput::current;
+bool is_remaining_loss(const motor::MotorEffect& effect) { return effect.type->name == std::string_view("remaining_loss"); }
+
+bool has_remaining_loss(const motor::Motor& motor) { return std::ranges::any_of(motor.effects, is_remaining_loss); }
+
+static bool has_heat_input(const motor::Motor& motor, const recording::Recording& recording, HeatInput heat, const HeatRules& rules) {
+  const auto has = [&](thermal::Signal signal) { return estimation::has_signal(recording, signal); };
+  switch (heat) {
+    case HeatInput::current:
+      return has(thermal::Signal::current);
+    case HeatInput::input_power:
+      return has(thermal::Signal::input_power);
+    case HeatInput::torque: {
+      estimation::MeasuredRunOptions how = how_to_read(motor, heat);
+      return std::ranges::count(estimation::signals_of(recording, how), thermal::Signal::current) > 0;
+    }
+    case HeatInput::power_balance:
+      break;
   }
-  if (all_have(recordings, thermal::Signal::input_power)) {
-    return HeatInput::input_power;
+  const bool may_add = rules.may_add_remaining_loss && motor.effects.empty() && !motor.fit;
+  return (has_remaining_loss(motor) || may_add) && has(thermal::Signal::current) && has(thermal::Signal::input_power) &&
+         has(thermal::Signal::shaft_power);
+}
+
+static std::optional<HeatInput> wanted_heat_input(const motor::Motor& motor, const HeatRules& rules) {
+  return rules.wanted || !motor.fit ? rules.wanted : motor.fit->heat_input;
+}
+
+HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, const HeatRules& rules) {
+  const auto all_have = [&](HeatInput heat) {
+    return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return has_heat_input(motor, each, heat, rules); });
+  };
+  if (const std::optional<HeatInput> wanted = wanted_heat_input(motor, rules); wanted && all_have(*wanted)) {
+    return *wanted;
   }
-  if (all_have(recordings, thermal::Signal::current, torque)) {
-    return HeatInput::current;
+  for (const HeatInput heat : {HeatInput::power_balance, HeatInput::current, HeatInput::input_power, HeatInput::torque}) {
+    if (all_have(heat)) {
+      return heat;
+    }
   }
   std::vector<base::Diagnostic> lacking;
   for (const recording::Recording& each : recordings) {
-    if (!estimation::has_signal(each, thermal::Signal::current)) {
+    if (!has_heat_input(motor, each, HeatInput::current, rules) && !has_heat_input(motor, each, HeatInput::torque, rules)) {
       lacking.push_back({{each.file.string()},
                          "current_A",
                          "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "
                          "computed; add one of the two columns"});
     }
   }
-  throw base::Failure(base::ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
-}
-
-bool has_remaining_loss(const motor::Motor& motor) {
-  return std::ranges::any_of(motor.effects,
-                             [](const motor::MotorEffect& each) { return each.type->name == std::string_view("remaining_loss"); });
-}
-
-HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, bool may_add_remaining_loss) {
-  const bool has_no_losses = motor.effects.empty() && !motor.fit;
-  const bool is_balanced = std::ranges::all_of(
-      std::array{thermal::Signal::current, thermal::Signal::input_power, thermal::Signal::shaft_power, thermal::Signal::speed},
-      [&](thermal::Signal signal) { return all_have(recordings, signal); });
-  if (is_balanced && (has_remaining_loss(motor) || (may_add_remaining_loss && has_no_losses))) {
-    return HeatInput::power_balance;
+  if (!lacking.empty()) {
+    throw base::Failure(base::ExitCode::bad_input, "the logs have no heat input", std::move(lacking));
   }
-  return heat_input_for(recordings, shaft_torque_of(motor));
+  return HeatInput::current;
+}
+
+std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                                                   const HeatRules& rules, HeatInput used) {
+  const std::optional<HeatInput> wanted = wanted_heat_input(motor, rules);
+  if (!wanted || *wanted == used) {
+    return std::nullopt;
+  }
+  HeatInputLacking finding{*wanted, used, {}};
+  for (const recording::Recording& each : recordings) {
+    if (!has_heat_input(motor, each, *wanted, rules)) {
+      finding.recordings.push_back(each.name);
+    }
+  }
+  return finding;
 }
 
 std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings) {

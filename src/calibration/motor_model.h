@@ -23,9 +23,10 @@ inline constexpr std::string_view kImplicitPowerLoss = "input_power_loss";
 /// Prior standard deviation of the logarithm of a data sheet value without a stated spread.
 inline constexpr double kSheet_sd = 0.4;
 
-/// Signal from which the heat of a model is computed. `power_balance`: copper loss from current and resistance; all other loss is input
-/// power − shaft power − copper loss, by the motor's effect remaining_loss, and the no-load loss is 0.
-enum class HeatInput { current, input_power, power_balance };
+using motor::HeatInput;
+
+/// Returns true if the heat is copper loss and no-load loss, by a logged current or by the torque.
+constexpr bool is_by_current(HeatInput heat) { return heat == HeatInput::current || heat == HeatInput::torque; }
 
 /// Parameter of the motor file, or a heat capacity computed from two of them. Its logarithm is linear in θ.
 struct CalibratedValue {
@@ -55,26 +56,37 @@ struct MotorModel {
 
 /// Returns the options for reading logs of the motor; the caller sets `needed` and `ambient_C`. Rows are merged up to a tenth of the
 /// winding's time constant (0.05 to 2 s), because a network of two bodies does not describe faster changes of a real winding. A missing
-/// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. Sensors
-/// have the faults stated in the file.
+/// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. A
+/// logged current is read only if it is the heat input. Sensors have the faults stated in the file.
 estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
 
 /// Returns the sensor errors stated in the file, which are not fitted.
 std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
-/// Returns the heat input that all recordings have: current (copper loss), else input power, else a current computed from the torque with
-/// `torque`. Throws Failure (bad_input) if they have none of these.
-HeatInput heat_input_for(std::span<const recording::Recording> recordings, const estimation::ShaftTorque& torque = {});
-
+/// Returns true if the effect takes its heat from a measured power balance.
+bool is_remaining_loss(const motor::MotorEffect& effect);
 /// Returns true if the motor has a remaining_loss effect, that is, takes its losses from a measured power balance.
 bool has_remaining_loss(const motor::Motor& motor);
 
-/// Returns the heat input as heat_input_for() does, but prefers the power balance if all recordings have current, input power, torque and
-/// speed. The motor must then have a remaining_loss, or (with `may_add_remaining_loss`) no effects and no fit that already describe its
-/// losses.
-HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, bool may_add_remaining_loss);
+/// Rules for choosing a heat input.
+struct HeatRules {
+  /// Preferred heat input; empty: that of the motor file's fit. Without both, or if a recording lacks it, the recordings decide.
+  std::optional<HeatInput> wanted = {};
+  /// A motor without effects and without a fit may get a remaining_loss.
+  bool may_add_remaining_loss = false;
+};
 
-/// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable.
+/// Returns the wanted heat input if all recordings have it, else the first that all have: the power balance (current, input power, torque
+/// and speed) if the motor has or gets a remaining_loss, current, input power, torque, or a current of some logs and a torque of the
+/// others. Throws Failure (bad_input) if they have none of these.
+HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, const HeatRules& rules = {});
+
+/// Returns a finding if `used` is not the wanted heat input, with the recordings that lack the wanted one.
+std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                                                   const HeatRules& rules, HeatInput used);
+
+/// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable. A remaining_loss acts only in the power
+/// balance: the other heat inputs contain that loss.
 MotorModel motor_model(const motor::Motor& motor, HeatInput heat, bool with_speed);
 
 /// Returns the prior standard deviation of a parameter's logarithm: from its spread, widened according to its origin, or a default for the

@@ -19,8 +19,9 @@ struct RangedInput {
   std::string_view unit;
   bool is_size = false;  ///< true: the magnitude counts, and up to 20 % above the largest is in range
 };
+constexpr std::string_view kCurrent = "current_A";
 constexpr std::array kInputs{RangedInput{"ambient_C", "°C"}, RangedInput{"speed_rad_per_s", "rad/s", true},
-                             RangedInput{"current_A", "A", true}};
+                             RangedInput{kCurrent, "A", true}};
 constexpr double kAmbient_K = 5.0;
 constexpr double kSize_ratio = 1.2;
 
@@ -39,7 +40,7 @@ std::optional<motor::InputRange> range_of(const RangedInput& input, const record
 
 }  // namespace
 
-void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings) {
+void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings, motor::HeatInput heat) {
   for (const recording::Recording& recording : recordings) {
     for (const auto& [key, value] : recording.conditions) {
       range.conditions.insert(fmt::format("{}={}", key, value));
@@ -50,6 +51,9 @@ void widen(motor::TrainingRange& range, std::span<const recording::Recording> re
         place->second = {std::min(place->second.low, found->low), std::max(place->second.high, found->high)};
       }
     }
+  }
+  if (heat == motor::HeatInput::input_power || heat == motor::HeatInput::torque) {
+    range.inputs.erase(std::string(kCurrent));
   }
 }
 

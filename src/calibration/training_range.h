@@ -12,8 +12,8 @@
 namespace heatsoak::calibration {
 
 /// Adds the conditions, ambient temperatures, speeds and currents of the recordings to `range`. The limits are the 1st and 99th percentile,
-/// so that single outliers do not widen the range.
-void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings);
+/// so that single outliers do not widen the range. With a heat input that does not use a logged current, the range has no current.
+void widen(motor::TrainingRange& range, std::span<const recording::Recording> recordings, motor::HeatInput heat);
 
 /// A condition of a recording that no fitted run had.
 struct UnseenCondition {

@@ -56,23 +56,6 @@ void add_contradiction(const attribution::Selection& selection, const std::vecto
   }
 }
 
-/// Adds the finding that hold-out logs lack columns of curves, unless the training logs already gave it.
-void add_lacking_columns(std::span<const std::string> columns, const std::vector<recording::Recording>& holdout,
-                         std::vector<DiagnosisFinding>& findings) {
-  const std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(columns, holdout);
-  if (!lacking) {
-    return;
-  }
-  const bool is_known = std::ranges::any_of(findings, [&](const DiagnosisFinding& each) {
-    const auto* const note = std::get_if<estimation::RunNote>(&each);
-    const auto* const known = note != nullptr ? std::get_if<estimation::ColumnsLacking>(note) : nullptr;
-    return known != nullptr && *known == *lacking;
-  });
-  if (!is_known) {
-    findings.emplace_back(estimation::RunNote(*lacking));
-  }
-}
-
 /// Returns the phases of select_effects(); rounds may repeat, and usually the second round repeats the set of the first. `unit_s`: usual
 /// duration of one fit to the runs.
 std::vector<base::JobPhase> selection_work(double unit_s) {
@@ -155,7 +138,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   std::ranges::move(outside_declared_ranges(job.motor, model, answer.motor), std::back_inserter(findings));
-  const calibration::PredictionOptions predicting{choice.ambient_C, input.turns_within_rows};
+  const calibration::PredictionOptions predicting{choice.ambient_C, input.turns_within_rows, model.heat};
   progress.begin(kBand);
   answer.motor.fit->band = left_out_band(job.motor, model, answer.diagnosis, fitted);
   if (answer.motor.fit->band) {
@@ -164,7 +147,7 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   progress.begin(kScoring);
   answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
   score_files(job.motor, answer.motor, held_out, predicting, answer.score);
-  add_lacking_columns(columns, held_out, findings);
+  std::ranges::move(estimation::columns_lacking(columns, held_out), std::back_inserter(findings));
   add_fitted_holdouts(job.motor, held_out, findings);
   return answer;
 }

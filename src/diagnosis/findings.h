@@ -44,10 +44,10 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding =
-    std::variant<ExtensionsMayImitate, ContradictingRun, calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet,
-                 IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched,
-                 calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, calibration::SignalsMissing, ConditionNotApplied,
+                                      ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
+                                      ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue,
+                                      calibration::HeatInputLacking, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NoHeatInput : public base::Failure {
@@ -68,8 +68,8 @@ class NoEffectFollows : public base::Failure {
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.
 struct BeyondTraining {
   thermal::Signal signal = thermal::Signal::current;
-  double low = 0.0;   ///< 2nd percentile of the training runs, in the unit of the signal
-  double high = 0.0;  ///< 98th percentile
+  double low = 0.0;         ///< 2nd percentile of the training runs, in the unit of the signal
+  double high = 0.0;        ///< 98th percentile
   double time_share = 0.0;  ///< share of the time outside
 };
 

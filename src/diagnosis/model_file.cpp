@@ -27,8 +27,12 @@ namespace {
 /// Sets the signals that the logs must have, and adds a finding for each effect whose signals no log has.
 void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<recording::Recording>& recordings) {
   const std::vector<calibration::EffectNeeds> needs = calibration::needs_of(out.model);
-  // Hold-out runs and the band are predicted from the current of each log that has one, so logs with and without one do not mix.
-  out.how.is_heat_input_power = false;
+  // Unless the file states that the input power is the heat, one log without a current is no reason to ignore the currents of the others.
+  const bool is_stated = motor.fit && motor.fit->heat_input == out.heat;
+  const auto has_current = [](const recording::Recording& each) { return estimation::has_signal(each, thermal::Signal::current); };
+  if (out.heat == calibration::HeatInput::input_power && !is_stated && std::ranges::any_of(recordings, has_current)) {
+    out.how.ignores_current = false;
+  }
   calibration::EffectSignals signals = calibration::effect_signals(needs, recordings, out.how);
   const bool has_heat = std::ranges::any_of(
       signals.found, [](thermal::Signal each) { return each == thermal::Signal::current || each == thermal::Signal::input_power; });
@@ -143,6 +147,7 @@ void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const Diagnos
   motor::MotorFit together;
   together.motor = motor.fit ? motor.fit->motor : motor.id;
   together.runs = model.fitted;
+  together.heat_input = model.heat;
   together.training = model.training;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
     const calibration::CalibratedValue& each = *of_file[i];
@@ -216,12 +221,15 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
     out.fitted = everywhere.fit->runs;
     out.training = everywhere.fit->training;
   }
-  calibration::widen(out.training, recordings);
   std::ranges::transform(recordings, std::back_inserter(out.fitted), recording::name_and_fingerprint);
-  calibration::MotorModel built =
-      calibration::motor_model(everywhere, calibration::heat_input_of(everywhere, recordings, false), have(thermal::Signal::speed));
+  out.heat = calibration::heat_input_of(motor, recordings);
+  calibration::widen(out.training, recordings, out.heat);
+  if (std::optional<calibration::HeatInputLacking> lacking = calibration::lacking_heat_input(motor, recordings, {}, out.heat)) {
+    out.findings.emplace_back(*std::move(lacking));
+  }
+  calibration::MotorModel built = calibration::motor_model(everywhere, out.heat, have(thermal::Signal::speed));
   out.how = calibration::how_to_read(motor, built.heat);
-  if (built.heat == calibration::HeatInput::current && !have(thermal::Signal::speed) && calibration::most_loss_at_speed_W(motor) > 0.0) {
+  if (calibration::is_by_current(built.heat) && !have(thermal::Signal::speed) && calibration::most_loss_at_speed_W(motor) > 0.0) {
     out.findings.emplace_back(LossInUnknownHeat{calibration::most_loss_at_speed_W(motor)});
   }
   out.model = std::move(built.model);
@@ -232,9 +240,7 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   std::ranges::move(built.held, std::back_inserter(out.findings));
   std::ranges::move(calibration::held_sensors(motor, recordings), std::back_inserter(out.findings));
   add_conditional_effects(motor, recordings, out);
-  if (std::optional<estimation::ColumnsLacking> lacking = estimation::columns_lacking(out.how.columns, recordings)) {
-    out.findings.emplace_back(estimation::RunNote(*std::move(lacking)));
-  }
+  std::ranges::move(estimation::columns_lacking(out.how.columns, recordings), std::back_inserter(out.findings));
   set_needed(out, motor, recordings);
   const bool has_torque = have(thermal::Signal::shaft_power);
   if (!has_torque && std::ranges::all_of(recordings, [&](const recording::Recording& each) {

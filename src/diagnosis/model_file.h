@@ -14,6 +14,7 @@ namespace heatsoak::diagnosis {
 /// A motor's model as the logs require it.
 struct ModelOfLogs {
   estimation::Model model;
+  calibration::HeatInput heat = calibration::HeatInput::current;
   attribution::UsualErrors usual;
   std::vector<calibration::CalibratedValue> parameters;  ///< parameters of the motor file, as functions of the model's coordinates
   estimation::MeasuredRunOptions how;      ///< required signals and options for reading the runs, except for the ambient temperature
@@ -22,9 +23,10 @@ struct ModelOfLogs {
   std::vector<DiagnosisFinding> findings;  ///< assumptions for signals that no log has
 };
 
-/// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. If not every
-/// recording has a current, measured input power heats the winding. Effects with a condition act in the runs that have it. Heat inputs that
-/// no recording has are 0. Throws Failure (bad_input) if the recordings have no heat input that an effect of the motor uses.
+/// Builds the motor's network with the same free parameters as a calibration and with the file's uncertainties as priors. The heat input is
+/// that of heat_input_of(). If the file states none, recordings with and without a current are refused by measured_runs(). Effects with a
+/// condition act in the runs that have it. Heat inputs that no recording has are 0. Throws Failure (bad_input) if the recordings have no
+/// heat input that an effect of the motor uses.
 ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording::Recording>& recordings);
 
 /// Returns the motor with the parameters, effects and sensor errors of the diagnosis; to_toml() writes it as a motor file. Run deviations

@@ -58,13 +58,21 @@ struct SplitIntoRuns {
   std::string recording;
   std::size_t runs = 0;
 };
-/// Not every log has these columns, over which the model has curves. Logs without one use the hottest value of the curve.
+/// A log lacks columns over which the model has curves. The hottest value of each curve is used.
 struct ColumnsLacking {
+  std::string recording;
   std::vector<std::string> columns;  ///< at least one
-  bool operator==(const ColumnsLacking&) const = default;
+};
+/// A column that an effect depends on is blank for longer than it may be interpolated. A curve over it uses the nearest known value; the
+/// temperature of a neighbour is treated as unknown.
+struct ColumnBlank {
+  std::string recording;
+  std::string column;
+  double blank_s = 0.0;  ///< sum of these blanks
+  bool is_held = false;  ///< true: the nearest known value is used; false: the value is unknown
 };
 /// Omitted data and assumptions.
-using RunNote = std::variant<SensorNeverChanges, RowsUnused, SplitIntoRuns, ColumnsLacking>;
+using RunNote = std::variant<SensorNeverChanges, RowsUnused, SplitIntoRuns, ColumnsLacking, ColumnBlank>;
 
 /// Thrown if the model cannot be simulated over a run: name of the run and the cause. It has the cause's exit code.
 class RunNotSimulated : public base::Failure {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/unknown.h"
+#include "estimation/log_rows.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::estimation {
 namespace {
@@ -46,17 +49,38 @@ Eigen::VectorXd without_gaps(Eigen::VectorXd values) {
 
 }  // namespace
 
-std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings) {
-  std::vector<std::string> lacking;
-  for (const std::string& column : columns) {
-    const auto has_it = [&](const recording::Recording& each) {
-      return each.time_s.size() > 1 && columns_along(each, each.time_s).contains(column);
-    };
-    if (!column.empty() && !std::ranges::all_of(recordings, has_it)) {
-      lacking.push_back(column);
+std::vector<RunNote> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings) {
+  std::vector<RunNote> notes;
+  for (const recording::Recording& recording : recordings) {
+    ColumnsLacking lacking{recording.name, {}};
+    std::ranges::copy_if(columns, std::back_inserter(lacking.columns),
+                         [&](const std::string& column) { return !column.empty() && !has_values(recording.find(column)); });
+    if (!lacking.columns.empty()) {
+      notes.emplace_back(std::move(lacking));
     }
   }
-  return lacking.empty() ? std::nullopt : std::optional(ColumnsLacking{std::move(lacking)});
+  return notes;
+}
+
+double long_blanks_s(const recording::Recording& recording, std::string_view column) {
+  const recording::Channel* const channel = recording.find(column);
+  if (!has_values(channel)) {
+    return 0.0;
+  }
+  double all_s = 0.0;
+  for (const auto& [begin, end] : recording.runs()) {
+    for (std::size_t row = begin; row < end;) {
+      const std::size_t first = row;
+      while (row < end && std::isnan(channel->values[row])) {
+        ++row;
+      }
+      // From the last value to the next one, as in LogRows.
+      const double between_s = recording.time_s[std::min(row, end - 1)] - recording.time_s[first > begin ? first - 1 : first];
+      all_s += row > first && between_s >= thresholds().slow_s ? recording.time_s[std::min(row, end - 1)] - recording.time_s[first] : 0.0;
+      row += row == first ? 1 : 0;
+    }
+  }
+  return all_s;
 }
 
 std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s) {

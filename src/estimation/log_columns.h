@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,8 +18,11 @@ namespace heatsoak::estimation {
 /// only its magnitude.
 std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording& recording, const std::vector<double>& time_s);
 
-/// Returns the columns that not every log has; nothing if all have them. `columns` are those over which the model has curves.
-std::optional<ColumnsLacking> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
+/// Returns a note for each log that lacks a column. `columns` are those over which the model has curves.
+std::vector<RunNote> columns_lacking(std::span<const std::string> columns, std::span<const recording::Recording> recordings);
+
+/// Returns the time for which a column of the log is blank, of blanks of Thresholds::slow_s or more; 0 without the column.
+double long_blanks_s(const recording::Recording& recording, std::string_view column);
 
 /// Removes the columns that not all runs have, except `of_model`, over which the model already has a curve. Their effect would be
 /// confounded with other differences between the runs. Returns the names of the removed columns.

@@ -12,8 +12,10 @@
 namespace heatsoak::estimation {
 namespace {
 
-bool is_there(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque) {
-  const auto is_recorded = [&](thermal::Signal each) { return has_values(recording.find(column_of(each))); };
+bool is_there(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque, bool ignores_current) {
+  const auto is_recorded = [&](thermal::Signal each) {
+    return has_values(recording.find(column_of(each))) && !(ignores_current && each == thermal::Signal::current);
+  };
   if (signal == thermal::Signal::modulation && torque.resistance_ohm > 0.0 && torque.per_current_Nm_per_A > 0.0) {
     const bool is_identifiable =
         is_recorded(thermal::Signal::current) && is_recorded(thermal::Signal::speed) && is_recorded(thermal::Signal::bus_voltage);
@@ -73,7 +75,7 @@ bool has_values(const recording::Channel* channel) {
 }
 
 LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions& options)
-    : current_A_(options.is_heat_input_power ? nullptr : values("current_A", recording)),
+    : current_A_(options.ignores_current ? nullptr : values("current_A", recording)),
       speed_rad_per_s_(values("speed_rad_per_s", recording)),
       torque_Nm_(values("torque_Nm", recording)),
       bus_V_(values("bus_V", recording)),
@@ -152,13 +154,17 @@ double LogRows::modulation_of_current(double current_A, double speed_rad_per_s, 
 double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal) { return at.*thermal::quantity_of(signal).value; }
 
 bool has_signal(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque) {
-  return is_there(recording, signal, torque);
+  return is_there(recording, signal, torque, false);
 }
 
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque) {
+  return signals_of(recording, MeasuredRunOptions{.torque = torque});
+}
+
+std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const MeasuredRunOptions& options) {
   std::vector<thermal::Signal> signals;
   for (std::size_t i = 0; i < thermal::kSignalCount; ++i) {
-    if (const auto signal = static_cast<thermal::Signal>(i); is_there(recording, signal, torque)) {
+    if (const auto signal = static_cast<thermal::Signal>(i); is_there(recording, signal, options.torque, options.ignores_current)) {
       signals.push_back(signal);
     }
   }

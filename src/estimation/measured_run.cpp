@@ -67,10 +67,7 @@ class Builder {
  public:
   Builder(const recording::Recording& recording, const MeasuredRunOptions& options)
       : recording_(recording), options_(options), rows_(recording, options) {
-    signals_ = signals_of(recording, options.torque);
-    if (options.is_heat_input_power) {
-      std::erase(signals_, thermal::Signal::current);
-    }
+    signals_ = signals_of(recording, options);
     for (const SensorPlace& place : kSensorPlaces) {
       const recording::Channel* const channel = recording.find(place.key);
       const bool is_taken = std::ranges::find(sensors_, place.node, &Sensor::node) != sensors_.end();
@@ -128,11 +125,29 @@ class Builder {
     if (all_.runs.size() > 1) {
       all_.notes.emplace_back(SplitIntoRuns{recording_.name, all_.runs.size()});
     }
+    note_long_blanks();
     set_noise();
     return std::move(all_);
   }
 
  private:
+  /// A blank of another needed signal splits the run; see is_known().
+  void note_long_blanks() {
+    const auto note = [&](std::string_view column, bool is_held) {
+      if (const double blank_s = long_blanks_s(recording_, column); blank_s > 0.0) {
+        all_.notes.emplace_back(ColumnBlank{recording_.name, std::string(column), blank_s, is_held});
+      }
+    };
+    for (const std::string& column : options_.columns) {
+      note(column, true);
+    }
+    for (const thermal::Signal signal : options_.needed) {
+      if (thermal::quantity_of(signal).is_optional) {
+        note(column_of(signal), false);
+      }
+    }
+  }
+
   /// Row ranges of the recording's runs, joined across short pauses. A pause is short compared with a motor's time constants, whereas each
   /// separate run would have its own unknown start temperatures and heat.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> segments() const {

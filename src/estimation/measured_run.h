@@ -18,15 +18,15 @@
 namespace heatsoak::estimation {
 
 struct Sensor {
-  std::string signal;                           ///< key in the recording, for example "winding_C"
-  std::string node;                             ///< node of the network
-  double noise_K = 0.0;                         ///< standard deviation of one merged sample, at least 0.01 K, model-free estimate, quantisation included
-  double step_K = 0.0;                          ///< resolution; 0 if no quantisation is visible
+  std::string signal;    ///< key in the recording, for example "winding_C"
+  std::string node;      ///< node of the network
+  double noise_K = 0.0;  ///< standard deviation of one merged sample, at least 0.01 K, model-free estimate, quantisation included
+  double step_K = 0.0;   ///< resolution; 0 if no quantisation is visible
   std::vector<motor::SensorFault> faults = {};  ///< stated faults of this sensor
 };
 
-/// Uncertainty from missing rows or blank cells while the inputs changed, and from short pulses between equal ends: over `interval` the inputs may have been `other` instead of at[interval], or
-/// equally far in the other direction.
+/// Uncertainty from missing rows or blank cells while the inputs changed, and from short pulses between equal ends: over `interval` the
+/// inputs may have been `other` instead of at[interval], or equally far in the other direction.
 struct UnknownInputs {
   Eigen::Index interval = 0;
   thermal::OperatingPoint<double> other;
@@ -73,8 +73,8 @@ struct MeasuredRunOptions {
   double longest_step_s = 2.0;
   /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
   std::vector<thermal::Signal> needed = {};
-  /// The measured input power is the heat. It contains the copper loss, so a logged current would count it twice and is not read.
-  bool is_heat_input_power = false;
+  /// The logged current is not read, because the heat comes from another input, which contains the copper loss.
+  bool ignores_current = false;
   double least_current_A = 0.0;  ///< smallest current that can turn the motor: a log that never exceeds it is one at standstill
   ShaftTorque torque = {};       ///< used if the recording has no torque but current and speed
   std::vector<motor::SensorFault> faults = {};  ///< stated faults of the sensors
@@ -92,6 +92,8 @@ std::string recording_of(const MeasuredRun& run);
 
 /// Returns the signals that a recording has or that follow from it, for example the shaft power from torque or current.
 std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const ShaftTorque& torque = {});
+/// Returns the signals of a recording that is read with these options.
+std::vector<thermal::Signal> signals_of(const recording::Recording& recording, const MeasuredRunOptions& options);
 /// Returns whether signals_of() contains a signal.
 bool has_signal(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque = {});
 

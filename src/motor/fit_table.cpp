@@ -64,6 +64,24 @@ namespace {
 
 constexpr double kLargestInput = 1e5;
 
+/// Names of the heat inputs in the order of the enumerators.
+constexpr std::array<std::string_view, 4> kHeatInputs{"current", "torque", "input_power", "power_balance"};
+
+std::optional<HeatInput> read_heat_input(input::Reader& table) {
+  const std::optional<std::string> name = table.text("heat_input", input::Need::optional);
+  if (!name) {
+    return std::nullopt;
+  }
+  const auto found = std::ranges::find(kHeatInputs, *name);
+  if (found == kHeatInputs.end()) {
+    const std::vector<std::string> known(kHeatInputs.begin(), kHeatInputs.end());
+    table.problem("heat_input",
+                  fmt::format("'{}' is unknown; expected one of {}{}", *name, fmt::join(known, ", "), base::did_you_mean(*name, known)));
+    return std::nullopt;
+  }
+  return static_cast<HeatInput>(found - kHeatInputs.begin());
+}
+
 std::optional<ForecastBand> read_band(input::Reader& table) {
   const auto share = [&](const char* key, const char* meaning) {
     return table.quantity({key, "", base::Range::between(0.0, kMostShare), meaning}, input::Need::optional);
@@ -129,6 +147,8 @@ std::string band_text(const ForecastBand& band) {
 
 }  // namespace
 
+std::string_view name_of(HeatInput heat) { return kHeatInputs[static_cast<std::size_t>(heat)]; }
+
 Correlation::Correlation(std::size_t count) : count_(count), values_(count * count, 0.0) {
   for (std::size_t i = 0; i < count; ++i) {
     set(i, i, 1.0);
@@ -172,6 +192,7 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
                     input::Need::optional)
           .value_or(0.0);
   fit.extensions = table.texts("extensions", input::Need::optional);
+  fit.heat_input = read_heat_input(table);
   fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
@@ -208,6 +229,9 @@ std::string to_toml(const MotorFit& fit) {
               ? ""
               : fmt::format("# added for better forecasts, no diagnosis\nextensions = [\"{}\"]\n", fmt::join(fit.extensions, "\", \""));
   text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", base::significant(fit.free_run_error_K, 2)) : "";
+  text += fit.heat_input
+              ? fmt::format("# the thermal values hold for heat from this input of a log\nheat_input = \"{}\"\n", name_of(*fit.heat_input))
+              : "";
   text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");
 }

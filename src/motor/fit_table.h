@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,16 @@ struct ForecastBand {
   double heat_factor_sd = 0.0;                 ///< standard deviation of the logarithm of a factor on all heat of a run
   double width_ratio = 1.0;                    ///< factor by which the computed band is widened
 };
+
+/// Signal from which the heat of a model is computed.
+enum class HeatInput {
+  current,      ///< copper loss of the logged current, and no-load loss
+  torque,       ///< the same with the current for torque and drag; the logged current is not used
+  input_power,  ///< input power − shaft power; the logged current is not used
+  power_balance  ///< copper loss of the logged current; all other loss is input power − shaft power − copper loss (effect remaining_loss)
+};
+/// Returns the name in files: "current", "torque", "input_power" or "power_balance".
+std::string_view name_of(HeatInput heat);
 
 /// Range of an input signal, in the unit of its channel.
 struct InputRange {
@@ -69,6 +80,8 @@ struct MotorFit {
   double free_run_error_K = 0.0;
   /// Names of effects and sensor errors of the file that were added for better forecasts: they are no diagnosis.
   std::vector<std::string> extensions = {};
+  /// Heat input of the fitted runs. The thermal parameters hold for it, so it is also that of forecasts. Absent in older files.
+  std::optional<HeatInput> heat_input = {};
   TrainingRange training = {};
   std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };

@@ -1,6 +1,7 @@
 // Two curves over two columns of a log. The steady temperatures follow from Ohm's law of heat: rise = (sum of the heats) · resistance.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "calibration/forecast/prediction.h"
@@ -69,6 +70,42 @@ TEST(LogColumns, two_curves_read_their_own_columns) {
   };
   EXPECT_LT(error_K(0.5, 1.0 / 3.0), 0.01 + 2.0 * kHalfStep_K);
   EXPECT_GT(error_K(1.0 / 3.0, 0.5), 0.05 * rise_K) << "exchanged columns give 3.5 W instead of 4 W";
+}
+
+/// A log without one of the columns, in whole or for more than 60 s, is named together with the column.
+TEST(LogColumns, a_column_that_a_log_lacks_is_reported) {
+  const Folder folder;
+  const std::filesystem::path file = folder.path() / "curve.toml";
+  std::ofstream(file) << motor::to_toml(Sheet{}.motor(folder)) << curve_of("fan_ratio", 6.0);
+  const motor::Motor motor = motor::read_motor(file);
+  const auto notes_on = [&](std::size_t first_blank, std::size_t blank_rows) {
+    recording::Recording log = steady_log(30.0, 20.0, 0.5, 0.5);
+    for (recording::Channel& channel : log.channels) {
+      for (std::size_t row = first_blank; channel.quantity.key == "fan_ratio" && row < first_blank + blank_rows; ++row) {
+        channel.values[row] = std::nan("");
+      }
+    }
+    std::vector<estimation::RunNote> notes;
+    for (const PredictionNote& note : predict(motor, std::vector{log}, {}).notes) {
+      if (const auto* const of_run = std::get_if<estimation::RunNote>(&note)) {
+        notes.push_back(*of_run);
+      }
+    }
+    return notes;
+  };
+  EXPECT_TRUE(notes_on(100, 50).empty());
+  const std::vector<estimation::RunNote> partly = notes_on(100, 80);
+  ASSERT_EQ(partly.size(), 1U);
+  const auto& blank = std::get<estimation::ColumnBlank>(partly[0]);
+  EXPECT_EQ(blank.recording, "steady");
+  EXPECT_EQ(blank.column, "fan_ratio");
+  EXPECT_NEAR(blank.blank_s, 80.0, 1e-9);
+  EXPECT_TRUE(blank.is_held);
+  const std::vector<estimation::RunNote> wholly = notes_on(0, 3600);
+  ASSERT_EQ(wholly.size(), 1U);
+  const auto& lacking = std::get<estimation::ColumnsLacking>(wholly[0]);
+  EXPECT_EQ(lacking.recording, "steady");
+  EXPECT_EQ(lacking.columns, std::vector<std::string>{"fan_ratio"});
 }
 
 }  // namespace

@@ -291,8 +291,11 @@ TEST(WordsOfRuns, NotesAndReasons) {
   using namespace estimation;
   EXPECT_EQ(words_of(RunNote(SensorNeverChanges{"run1", "stator_C"})),
             "run1: stator_C is not used as a sensor, because its value never changes");
-  EXPECT_EQ(words_of(RunNote(ColumnsLacking{{"fan_V", "flap_deg"}})),
-            "the hottest value of the curve is used in logs without a column fan_V, flap_deg, which not every log has");
+  EXPECT_EQ(words_of(RunNote(ColumnsLacking{"run1", {"fan_V", "flap_deg"}})),
+            "temperatures of run1 may be too high, because it does not have fan_V, flap_deg: the hottest value of the curve is used");
+  EXPECT_EQ(
+      words_of(RunNote(ColumnBlank{"run1", "neighbour_C", 90.0, false})),
+      "temperatures of run1 may be wrong, because neighbour_C is blank for 90 s, too long to interpolate: the value is treated as unknown");
   EXPECT_EQ(words_of(RunNote(RowsUnused{"run1", 12, 20, {RowsLack{RowsLack::What::signal, thermal::Signal::current, 11, 20}}})),
             "run1: 12 of 20 rows are not used: 11 of 20 rows have no current_A");
   EXPECT_EQ(words_of(std::vector<LossOfRows>{GapsSplitRows{20, 2}, RowsLack{RowsLack::What::surroundings, {}, 1, 20},

@@ -160,7 +160,7 @@ class Listing {
       }
     }
     const double ratio = std::sqrt(squares / time_s) / thermal::kReferenceSpeed_rad_per_s;
-    if (!(ratio > 0.01) || !(heat_W > 0.0) || setup_.heat != HeatInput::current) {
+    if (!(ratio > 0.01) || !(heat_W > 0.0) || !is_by_current(setup_.heat)) {
       return;
     }
     for (const char* node : {"winding", "stator"}) {
@@ -188,8 +188,9 @@ ForecastModel ForecastSetup::model() const {
   return {std::move(all), motor, faults};
 }
 
-ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
-  ForecastSetup setup{.motor = motor, .heat = heat_input_of(motor, recordings, true)};
+ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                             std::optional<HeatInput> wanted_heat) {
+  ForecastSetup setup{.motor = motor, .heat = heat_input_of(motor, recordings, {wanted_heat, true})};
   setup.has_speed = all_have(recordings, thermal::Signal::speed);
   if (setup.heat == HeatInput::power_balance && !has_remaining_loss(motor)) {
     setup.motor.effects.push_back(effect("remaining_loss", "remaining_loss", {"winding", "stator"},

@@ -1,6 +1,7 @@
 // Setup of a forecast fit: motor file, heat input of its logs, and possible extensions of the network.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,8 +21,10 @@ struct ForecastSetup {
   [[nodiscard]] ForecastModel model() const;
 };
 
-/// Returns the setup for these logs. Adds remaining_loss to a motor without one if all logs have the power balance.
-ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings);
+/// Returns the setup for these logs, with the heat input of heat_input_of(). Adds remaining_loss to a motor without one if that is the
+/// power balance.
+ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings,
+                             std::optional<HeatInput> wanted_heat = {});
 
 /// Extension of the network, accepted only if it improves the prediction of left-out pieces. It is not a diagnosis.
 struct Extension {

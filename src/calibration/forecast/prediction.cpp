@@ -77,7 +77,7 @@ struct FileModel {
 
 /// Returns the model of a motor file for runs with the heat input of `setup`.
 FileModel model_of_file(ForecastSetup setup, const motor::Motor& motor, std::span<const estimation::MeasuredRun> runs) {
-  double unseen_loss_W = setup.heat == HeatInput::current ? most_loss_at_speed_W(motor) : 0.0;
+  double unseen_loss_W = is_by_current(setup.heat) ? most_loss_at_speed_W(motor) : 0.0;
   if (unseen_loss_W > 0.0 && std::ranges::any_of(runs, turns_unseen)) {
     setup.opens_loss_at_speed = true;
   } else {
@@ -91,7 +91,10 @@ FileModel model_of_file(ForecastSetup setup, const motor::Motor& motor, std::spa
 
 void predict_one(const motor::Motor& motor, const recording::Recording& recording, const PredictionOptions& options, Prediction& all) {
   const std::span<const recording::Recording> own(&recording, 1);
-  ForecastSetup setup = forecast_setup(motor, own);
+  ForecastSetup setup = forecast_setup(motor, own, options.heat);
+  if (std::optional<HeatInputLacking> lacking = lacking_heat_input(motor, own, {options.heat, true}, setup.heat)) {
+    all.notes.emplace_back(*std::move(lacking));
+  }
   std::vector<estimation::RunNote> notes;
   std::vector<estimation::MeasuredRun> runs = forecast_runs(setup, own, options.ambient_C, notes);
   std::ranges::move(notes, std::back_inserter(all.notes));
@@ -167,10 +170,7 @@ motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out)
 
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {
   Prediction all;
-  if (std::optional<estimation::ColumnsLacking> lacking =
-          estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings)) {
-    all.notes.emplace_back(estimation::RunNote(*std::move(lacking)));
-  }
+  std::ranges::move(estimation::columns_lacking(how_to_read(motor, HeatInput::current).columns, recordings), std::back_inserter(all.notes));
   for (const recording::Recording& recording : recordings) {
     predict_one(as_in(recording, motor), recording, options, all);
   }

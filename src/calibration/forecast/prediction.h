@@ -50,12 +50,12 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
 struct PredictionOptions {
   std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
   bool turns_within_rows = false;        ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
+  std::optional<HeatInput> heat = {};    ///< heat input of the model; empty: that of the motor file's fit
 };
 
-/// Predicts each recording separately with the heat input that it has: power balance, else current, else input power, else a
-/// current from the torque. Without a fit in the
-/// motor file, the parameters have their prior uncertainty. Throws Failure: bad_input if a log has no heat input or no temperature,
-/// numerics_failed if the temperatures diverge.
+/// Predicts each recording separately with the heat input of the model; a recording that lacks it, and a model that states none, use the
+/// first one that the recording has, see heat_input_of(). Without a fit in the motor file, the parameters have their prior uncertainty.
+/// Throws Failure: bad_input if a log has no heat input or no temperature, numerics_failed if the temperatures diverge.
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options);
 
 /// A recording, and the motor file that results from a fit without it.

@@ -200,8 +200,10 @@ std::string say(const calibration::SignalsMissing& of) {
       assumptions.push_back(std::move(assumption));
     }
   }
-  const std::string who = of.recording.empty() ? "no log has" : of.recording + " does not have";
-  return fmt::format("{} {}, on which {} depends; {}", who, fmt::join(columns, " and "), of.effect, fmt::join(assumptions, " and "));
+  const std::string who = of.recording.empty() ? of.is_unread ? "no log is read with" : "no log has"
+                                               : of.recording + (of.is_unread ? " is read without" : " does not have");
+  return fmt::format("{} {}, on which {} depends; {}", who, fmt::join(columns, " and "), of.effect,
+                     of.is_unused ? "the effect is not used" : fmt::format("{}", fmt::join(assumptions, " and ")));
 }
 
 std::string say(const calibration::SensorHeld& of) {
@@ -229,6 +231,27 @@ std::string say(const calibration::BandIsEstimated& of) {
       "the band of {} is only an estimate from its declared uncertainties and the usual error of forecasts; `heatsoak calibrate`, or "
       "`heatsoak diagnose` with two logs or more, determines a band",
       of.motor);
+}
+
+std::string_view columns_of(motor::HeatInput heat) {
+  switch (heat) {
+    case motor::HeatInput::current:
+      return "current_A";
+    case motor::HeatInput::torque:
+      return "torque_Nm";
+    case motor::HeatInput::input_power:
+      return "power_in_W";
+    case motor::HeatInput::power_balance:
+      break;
+  }
+  return "the power balance (current_A, power_in_W, torque_Nm and speed_rad_per_s)";
+}
+
+std::string say(const calibration::HeatInputLacking& of) {
+  return fmt::format(
+      "temperatures may be wrong by several kelvin: the model was fitted with heat from {}, which {} {} not have, so that the heat comes "
+      "from {}",
+      columns_of(of.of_model), fmt::join(of.recordings, ", "), of.recordings.size() == 1 ? "does" : "do", columns_of(of.used));
 }
 
 std::string say(const estimation::RunNote& of) { return words_of(of); }
@@ -308,6 +331,10 @@ std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>
     words.push_back(std::visit([](const auto& each) { return say(each); }, note));
   }
   return words;
+}
+
+Severity severity_of(const calibration::PredictionNote& note) {
+  return std::visit([](const auto& each) { return severity_of(calibration::CalibrationFinding(each)); }, note);
 }
 
 std::string parameter_words(const calibration::OpenDirection& open) {
@@ -395,7 +422,10 @@ std::string words_of(const calibration::GrownError& error) {
 
 Severity severity_of(const calibration::CalibrationFinding& finding) {
   using namespace calibration;
-  using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit>;
+  if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
+    return severity_of(*note);
+  }
+  using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, HeatInputLacking>;
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
                       ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;

@@ -25,6 +25,8 @@ std::string words_of(const calibration::LogProblem& problem);
 std::vector<std::string> words_of(const std::vector<calibration::AdmissionNote>& notes);
 std::vector<std::string> words_of(const std::vector<calibration::PredictionNote>& notes);
 
+Severity severity_of(const calibration::PredictionNote& note);
+
 /// Returns the names of the parameters that are not determined.
 std::string parameter_words(const calibration::OpenDirection& open);
 /// Returns why they are not determined.

@@ -9,6 +9,7 @@
 #include "estimation/log_rows.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/diagnosis_words.h"
+#include "present/measured/run_words.h"
 #include "present/measured/severity_of_kind.h"
 
 namespace heatsoak::present {
@@ -84,7 +85,10 @@ std::string words_of(const diagnosis::DiagnosisFinding& finding) {
 
 Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   using namespace diagnosis;
-  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange>;
+  if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
+    return severity_of(*note);
+  }
+  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange, calibration::HeatInputLacking>;
   using Notes =
       Kinds<calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
             TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;

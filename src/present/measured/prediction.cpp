@@ -47,10 +47,12 @@ std::vector<Note> prediction_notes(const calibration::PredictionAnswer& answer, 
   for (const std::string& each : reading_words(readings)) {
     all.push_back({Severity::background, each});
   }
-  for (const std::vector<std::string>& notes : {words_of(answer.admission.notes), words_of(answer.prediction.notes)}) {
-    for (const std::string& each : notes) {
-      all.push_back({Severity::note, each});
-    }
+  for (const std::string& each : words_of(answer.admission.notes)) {
+    all.push_back({Severity::note, each});
+  }
+  const std::vector<std::string> words = words_of(answer.prediction.notes);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    all.push_back({severity_of(answer.prediction.notes[i]), words[i]});
   }
   return all;
 }

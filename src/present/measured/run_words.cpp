@@ -5,6 +5,7 @@
 
 #include "base/quantity.h"
 #include "estimation/log_rows.h"
+#include "present/measured/severity_of_kind.h"
 
 namespace heatsoak::present {
 namespace {
@@ -47,14 +48,24 @@ std::string say(const estimation::SplitIntoRuns& of) {
 }
 
 std::string say(const estimation::ColumnsLacking& of) {
-  return fmt::format("the hottest value of the curve is used in logs without a column {}, which not every log has",
-                     fmt::join(of.columns, ", "));
+  return fmt::format("temperatures of {} may be too high, because it does not have {}: the hottest value of the curve is used",
+                     of.recording, fmt::join(of.columns, ", "));
+}
+
+std::string say(const estimation::ColumnBlank& of) {
+  return fmt::format("temperatures of {} may be wrong, because {} is blank for {} s, too long to interpolate: {}", of.recording, of.column,
+                     base::significant(of.blank_s, 3), of.is_held ? "the nearest known value is used" : "the value is treated as unknown");
 }
 
 }  // namespace
 
 std::string words_of(const estimation::RunNote& note) {
   return std::visit([](const auto& each) { return say(each); }, note);
+}
+
+Severity severity_of(const estimation::RunNote& note) {
+  using namespace estimation;
+  return severity_in<Kinds<ColumnsLacking, ColumnBlank>, Kinds<SensorNeverChanges, RowsUnused, SplitIntoRuns>, Kinds<>>(note);
 }
 
 std::string words_of(const std::vector<estimation::LossOfRows>& reasons) {

@@ -5,11 +5,14 @@
 #include <vector>
 
 #include "estimation/findings.h"
+#include "present/document.h"
 
 namespace heatsoak::present {
 
 /// Returns the note as one sentence.
 std::string words_of(const estimation::RunNote& note);
+/// Temperatures may be wrong after a warning.
+Severity severity_of(const estimation::RunNote& note);
 /// Returns the reasons why rows are not used, joined by commas.
 std::string words_of(const std::vector<estimation::LossOfRows>& reasons);
 
