@@ -56,7 +56,7 @@ struct WheelConfig {
   float speed_per_rim_per_m = 0.0F;      ///< reciprocal of rim_per_speed_m
   float per_damping_rad_per_V_s = 0.0F;  ///< 1/d
   /// speed_per_rim_per_m/(1 − tᵀ·P·t): converts the rim speed's residual of the fit over all wheels into the difference between the wheel
-  /// speed and the one that the other wheels imply. 0: they imply none.
+  /// speed and the one that the other wheels imply. 0 if the other wheels do not determine this speed.
   float others_rad_per_m = 0.0F;
   float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip limit on level ground
   std::uint32_t is_grip_limit = 0;  ///< 1 if the grip limit is the smaller one, else 0
@@ -194,7 +194,7 @@ struct WheelState {
   std::uint8_t is_open = 1;                ///< 1 if the bridge was open over the last period
   std::uint8_t has_current = 0;            ///< 1 after the first current sample; a missing sample is a fault from then on
   std::uint8_t is_current_distrusted = 0;  ///< 1 if the current sensor has contradicted voltage and speed for too long
-  std::uint8_t has_spoken_wrongly = 0;     ///< 1 if a sample was implausible since the last comparison
+  std::uint8_t was_implausible = 0;        ///< 1 if a sample was implausible since the last comparison
   std::uint8_t has_stator = 0;             ///< 1 after the first stator sample; a missing sample is a fault from then on
 };
 
@@ -259,12 +259,12 @@ struct alignas(8) State {
   float shadow_deficit_A_s = 0.0F;  ///< time integral of the current that the guard would have taken away
   std::uint8_t is_limited = 0;      ///< 1 if a limit scaled the wheels in the last period
   std::uint8_t yaw_fault = 0;
-  std::uint8_t is_yaw_same = 0;             ///< 1 if the last two samples of the yaw rate are equal
-  std::uint8_t has_yaw_spoken_wrongly = 0;  ///< 1 if a sample was implausible since the last comparison
-  std::uint8_t is_held_fresh = 0;           ///< 1 if stages 2 to 4 were run in the last period for a body velocity
-  std::uint8_t next_guard = 0;              ///< wheel whose guard has waited longest
-  std::uint16_t guard_clock = 0;            ///< periods since start(); wraps
-  float ambient_C = kNoSample;              ///< last validated air temperature; NaN before the first sample, whose absence is no fault
+  std::uint8_t is_yaw_same = 0;          ///< 1 if the last two samples of the yaw rate are equal
+  std::uint8_t was_yaw_implausible = 0;  ///< 1 if a sample was implausible since the last comparison
+  std::uint8_t is_held_fresh = 0;        ///< 1 if stages 2 to 4 were run in the last period for a body velocity
+  std::uint8_t next_guard = 0;           ///< wheel whose guard has waited longest
+  std::uint16_t guard_clock = 0;         ///< periods since start(); wraps
+  float ambient_C = kNoSample;           ///< last validated air temperature; NaN before the first sample, whose absence is no fault
   ComparisonState comparison;
   GuardState guard[kMostWheels];
 };

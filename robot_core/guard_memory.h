@@ -4,7 +4,7 @@
 //   once, while the robot stands:  start(config, state, {});  restore(config, state, copy, elapsed_s, board_C);
 //   after each step:               copy the State to the backup RAM
 //
-// step() and start() do not need this file, so a controller without such a memory does not contain it.
+// step() and start() do not need this file. A controller without such a memory need not contain it.
 #pragma once
 
 #include "robot_core/drive_core.h"

@@ -275,9 +275,9 @@ bool imply_from(const Config& config, const State& state, Validated& validated, 
   return is_known;
 }
 
-/// True if a rejected sample may be the correct one: without a spare sensor, after fault 111 to 113 without a current sensor, unless it
-/// stays constant, and after fault 117 of two wheels that both contradict the rest, because two wrong sensors can outvote the others. If
-/// only one is wrong, the other one soon agrees with the rest.
+/// Returns true if a rejected sample may be the correct one. This is possible only without a spare sensor, in two cases: fault 111 to 113
+/// of a wheel without current sensor whose sample does not stay constant; or fault 117 of two wheels that still contradict the rest. Two
+/// wrong sensors can outvote the others; if only one is wrong, the other wheel soon agrees with the rest again.
 bool is_rejection_doubtful(const Config& config, const State& state, const Validated& validated) {
   bool is_doubtful = false;
   int wrong = 0;
@@ -344,7 +344,7 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   const bool is_jump = absolute(sample - state.raw_yaw_rate_rad_per_s) > kYawJump_rad_per_s && state.steps != 0;
   if (!is_possible || is_jump) {
     state.yaw_fault = code(Reason::yaw_rate_missing);
-    state.has_yaw_spoken_wrongly = 1;
+    state.was_yaw_implausible = 1;
     note_faults(state);
   }
   state.is_yaw_same = sample == state.raw_yaw_rate_rad_per_s ? 1 : 0;
@@ -372,7 +372,7 @@ void validate_yaw_rate(const Config& config, State& state, const Input& input, V
   wheel.raw_speed_rad_per_s = is_possible ? sample : 0.0F;
   const bool is_jump = !(absolute(change_rad_per_s) <= jump_rad_per_s);
   if (!is_possible || is_jump) {
-    wheel.has_spoken_wrongly = 1;
+    wheel.was_implausible = 1;
     // Without a jump a sample too large is no disturbance, but a wrong scale.
     const Reason fault = !is_jump ? Reason::wheel_speed_wrong : is_possible ? Reason::wheel_speed_jump : Reason::wheel_speed_missing;
     wheel.speed_fault = wheel.speed_fault == 0 ? code(fault) : wheel.speed_fault;

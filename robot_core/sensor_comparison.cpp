@@ -94,13 +94,13 @@ bool current_contradicts(const Config& config, const WheelState& wheel, float se
   const float apart_rad_per_s = absolute(state.raw_yaw_rate_rad_per_s - yaw_rate_of_wheels(config, validated));
   const bool disagrees = validated.are_all_sensed && apart_rad_per_s > kYawDisagreement_rad_per_s;
   const bool is_accepted = state.yaw_fault == 0;
-  const bool is_evidence = is_accepted ? state.is_yaw_same != 0 && disagrees : state.has_yaw_spoken_wrongly == 0 && !disagrees;
+  const bool is_evidence = is_accepted ? state.is_yaw_same != 0 && disagrees : state.was_yaw_implausible == 0 && !disagrees;
   comparison.yaw_evidence_s = is_evidence ? comparison.yaw_evidence_s + since_s : 0.0F;
   if (comparison.yaw_evidence_s > (is_accepted ? kStuck_s : kSteadyAgain_s)) {
     state.yaw_fault = is_accepted ? code(Reason::yaw_rate_stuck) : 0;
     comparison.yaw_evidence_s = 0.0F;
   }
-  state.has_yaw_spoken_wrongly = 0;
+  state.was_yaw_implausible = 0;
 }
 
 bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mode::pose_target; }
@@ -262,7 +262,7 @@ bool is_wrong(const Config& config, const State& state, const Validated& validat
     }
   } else if (fault != code(Reason::wheel_speed_swapped)) {
     const bool is_comparable = validated.wheel[i].is_speed_known || validated.are_samples_compared;
-    bool is_confirmed = agrees && is_comparable && wheel.has_spoken_wrongly == 0;
+    bool is_confirmed = agrees && is_comparable && wheel.was_implausible == 0;
     float more_s = since_s;
     if (fault == code(Reason::wheel_speed_wrong)) {
       is_confirmed = is_confirmed && !is_wrong_now;
@@ -277,7 +277,7 @@ bool is_wrong(const Config& config, const State& state, const Validated& validat
       evidence_s = 0.0F;
     }
   }
-  wheel.has_spoken_wrongly = 0;
+  wheel.was_implausible = 0;
 }
 
 /// Returns true if the evidence that does not depend on pushes also speaks for a swap of two sensors: their exchange makes four speeds fit
@@ -393,12 +393,12 @@ float yaw_rate_of_wheels(const Config& config, const Validated& validated) {
   if (recall_sensors(known, state)) {
     state.comparison = known;
     for (int i = 0; i < kMostWheels; ++i) {
-      state.wheel[i].has_spoken_wrongly = 1;  // a fault since the last comparison has changed the meaning of evidence_s
+      state.wheel[i].was_implausible = 1;  // a fault since the last comparison has changed the meaning of evidence_s
       state.wheel[i].speed_fault = known.speed_fault[i];
       state.wheel[i].is_current_distrusted = known.current_error_s[i] > kStuck_s ? 1 : 0;
     }
     state.yaw_fault = known.yaw_fault;
-    state.has_yaw_spoken_wrongly = 1;
+    state.was_yaw_implausible = 1;
   }
 }
 

@@ -45,7 +45,8 @@ struct GuardModel {
   float most_current_A = 0.0F;  ///< current limit of the motor driver
   float cold_current_A = 0.0F;  ///< allowed current of a cold motor at standstill
   float heat_ratio = 1.0F;      ///< safety factor on heat, at least 1: the observer counts this many times the heat of the nominal motor
-  /// Steady state of the nodes without current in the hottest surroundings, rounded up. Temperatures that are at most c >= 0 above stay so.
+  /// Steady state of the nodes without current in the hottest surroundings, rounded up. Nodes that are all at most c >= 0 K above it never
+  /// get further above it.
   float resting_C[kMostGuardNodes] = {};
   heatsoak_current_table table{};
   PlausibleRange plausible_range[kGuardSignals];

@@ -41,9 +41,9 @@ class SetSearch {
   };
   SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
-  /// Replaces the linear evidence by that of nonlinear fits, best set first, because linear evidence along another set's path can be too
-  /// high. Stops at the first set that loses less than `distinct_nats`, or after `most` fits. Sets without a fit change by as much as the
-  /// best fitted one.
+  /// Replaces the linear evidence of sets by that of nonlinear fits, best set first. The linear evidence can be too high, because it was
+  /// computed along the path of another set. Stops after `most` fits, or at the first set whose evidence falls by less than
+  /// `distinct_nats`. The evidence of each set without a fit changes by as much as that of the set which is best after the fits.
   void reconsider(const std::function<double(const std::vector<int>& members, const AtBest& at)>& fitted_nats, std::size_t most);
   /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }

@@ -28,8 +28,8 @@ struct JobEstimate {
 /// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
 /// ignores all calls.
 ///
-/// The expected durations count only as ratios once work has been measured: each kind of phase is scaled by its own measured speed, and
-/// kinds that have not begun by the mean speed of the job.
+/// Once work has been measured, only the ratios of the expected durations count. Each kind of phase is scaled by its own measured speed; a
+/// kind that has not begun is scaled by the mean speed of the job.
 class JobProgress {
  public:
   using Now = std::function<double()>;  ///< returns a time in s that never decreases

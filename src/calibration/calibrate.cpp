@@ -371,7 +371,7 @@ class Calibrating {
       return;
     }
     throw NothingLearned(all_.open, std::ranges::any_of(recordings_, [](const recording::Recording& each) {
-                           return recording::heat_input_of(each) != nullptr;
+                           return recording::most_direct_heat_input(each) != nullptr;
                          }));
   }
 
@@ -472,7 +472,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
       parameter->derivation +=
           fmt::format("{}fit to measured temperatures, which do not determine it alone", parameter->derivation.empty() ? "" : "; ");
     }
-    const base::Range declared = declared_range(result, each.name);
+    const base::Range declared = possible_range(result, each.name);
     parameter->spread = base::Spread{base::Spread::Kind::range, std::max(each.low, declared.low), std::min(each.high, declared.high), true};
   }
   fit.correlation = motor::Correlation(std::span(calibration.correlation.data(), static_cast<std::size_t>(calibration.correlation.size())));

@@ -82,7 +82,7 @@ bool writes_forecast(WrittenFit wanted, const Forecast& forecast, bool follows_f
   return forecast.source != ForecastSource::file && is_better_than_innovations(forecast);
 }
 
-base::Range declared_range(const motor::Motor& motor, std::string_view key) {
+base::Range possible_range(const motor::Motor& motor, std::string_view key) {
   for (const motor::MotorEffect& effect : motor.effects) {
     for (const base::ParameterSpec& spec : effect.type->parameters) {
       if (key == fmt::format("effects.{}.{}", effect.name, spec.key)) {

@@ -1,5 +1,5 @@
-// Check files: [[check]] tables with a robot, a duty, a motor … and limits on the results computed from them, or with a command of this
-// program and limits on the numbers of its answer.
+// Check files: [[check]] tables. One kind has a robot, a duty, a motor … and limits on the results computed from them. The other kind has a
+// command of this program and limits on the numbers of its answer.
 #pragma once
 
 #include <cstdint>

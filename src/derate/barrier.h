@@ -14,7 +14,7 @@ class Barrier {
   Barrier(const Observer& observer, const BarrierRules& rules);
 
   /// Returns the square, in A², of the largest current at which the barrier holds in every hot case. Assumes that heat grows with current.
-  /// The result is negative if the barrier is violated even without current: the margin is extrapolated along the line through zero
+  /// The result is negative if the barrier is violated even without current. The margin is then extrapolated along the line through zero
   /// and a small current, so that the result has no kink at 0. Accurate to 1 in 10⁶, rounded down. Above (2·most_current)², where it does
   /// not matter, it is extrapolated along the line through the margins at zero and there. Range −(2·most_current)² to (8·most_current)².
   double square_A2(double speed_rad_per_s, double stator_C, double winding_C);

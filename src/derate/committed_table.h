@@ -32,8 +32,8 @@ struct CommittedTable {
   bool is_integer = false;            ///< a C header in integers (c_header_q15)
 };
 
-/// Reads a C header or a CSV table of `derate`; the content decides which. Throws Failure (bad_input), with the line if there is one, for
-/// an unreadable file, another kind of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid.
+/// Reads a C header or a CSV table of `derate`; the content decides which. Throws Failure (bad_input) for an unreadable file, another kind
+/// of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid. It has the line if there is one.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
 /// Returns which options of the sensor differ between a C header and `expected`; empty if none does, and for a CSV table. A header with
@@ -65,8 +65,9 @@ struct TableComparison {
 };
 
 /// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
-/// axes, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores differences below
-/// 0.05 % of the largest current (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴ count as equal.
+/// axes. This suffices, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores
+/// differences below 0.05 % of the largest current (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴
+/// count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak::derate

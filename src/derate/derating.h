@@ -25,8 +25,9 @@ struct DerateOptions {
   std::optional<SensorOptions> sensor = {};
 };
 
-/// Share of the winding's nominal time constant. On three generated matches a robot with the ECX FLAT 32 L lost 14.6 % of its distance with
-/// 1/24, 6.4 % with 1/4 and 5.3 % with 1 (tolerances of the file, hard match); with those of a bench test 0.2, 0.3 and more than 0.8 %.
+/// Default of `approach_s` as a share of the winding's nominal time constant. It was chosen by the distance that a robot with the ECX FLAT
+/// 32 L lost to the limit in three generated matches. With the tolerances of the motor file, on the hard match, it lost 14.6 % with a share
+/// of 1/24, 6.4 % with 1/4 and 5.3 % with 1. With the tolerances of a bench test it lost 0.2, 0.3 and more than 0.8 %.
 inline constexpr double kApproach_ratio = 0.25;
 /// Returns the time constant in s with which the winding of this motor approaches its limit, > 0. Throws Failure (bad_input) if the options
 /// give a longer one than the time constant of its winding.
@@ -43,7 +44,7 @@ struct ActingEffect {
   std::string name;
   std::string type;
   std::string equation;
-  std::string column;  ///< log column that the effect depends on, represented by its hottest value; empty if none
+  std::string column;  ///< log column over which the effect has a curve: the observer uses the curve's hottest value; empty if none
 };
 
 struct Derating {
@@ -84,7 +85,7 @@ long least_samples(const GuaranteeOptions& options);
 /// Computes the derating. Values without a tolerance get a default one first (with_default_spreads()). Finds the smallest safety factor on
 /// heat at which the share of drawn motors that keep every limit in every use reaches the confidence. Then raises the factor until, on
 /// independently drawn motors, the lower bound of that share (kCertainty_share) reaches the confidence as well. Throws Failure: bad_input
-/// if the period is too long for the motor or the samples are too few for the confidence; limit_exceeded if no factor is sufficient,
+/// if the period is too long for the motor, or if the samples are too few for the confidence; limit_exceeded if no factor suffices
 /// because the motor exceeds a limit without current.
 Derating derate(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress = {});
 

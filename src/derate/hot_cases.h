@@ -55,14 +55,14 @@ HotCase plain_case(const BarrierRules& rules);
 /// the motor's laws: other directions, and the values of each signal that heat the winding most and the bodies most, found by a scan.
 std::vector<HotCase> hot_cases(const Observer& observer, const BarrierRules& rules);
 
-/// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most,
-/// without those for which another one heats every node at least as much. Current and speed range over both directions up to the maxima of
+/// Returns candidate values of an unknown signal, ascending: samples of its range, including the values that heat winding and bodies most.
+/// A value is left out if another one heats every node at least as much. Current and speed range over both directions up to the maxima of
 /// the rules; the air is always the hottest declared.
 std::vector<double> values_if_unknown(const Observer& observer, const BarrierRules& rules, observed::Signal signal);
 
-/// Returns the highest speed in rad/s at which the motor keeps its limits without current: in every hot case the bodies have temperatures
-/// within the limits at which no node heats any further. Beyond it the motor overheats even without current. At most
-/// rules.most_speed_rad_per_s; 0 if this fails at rest.
+/// Returns the highest speed in rad/s at which the motor keeps its limits without current. At this speed, in every hot case, there are
+/// temperatures of the bodies within the limits at which no node heats any further. Beyond it the motor overheats even without current. At
+/// most rules.most_speed_rad_per_s; 0 if this fails at rest.
 double sustainable_speed_rad_per_s(const Observer& observer, const BarrierRules& rules);
 
 }  // namespace heatsoak::derate

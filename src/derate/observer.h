@@ -18,8 +18,8 @@
 
 namespace heatsoak::derate {
 
-/// Input signals of the observer, in the order of the formula's first inputs: the quantities of thermal::kQuantities that are inputs of the
-/// firmware.
+/// Inputs of the observer, the quantities of thermal::kQuantities that have a FirmwareInput, in the order of the formula's first inputs.
+/// thermal::Signal enumerates other signals: those of a log.
 namespace observed {
 enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
 inline constexpr std::size_t kSignalCount = acceleration + 1;

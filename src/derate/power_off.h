@@ -9,18 +9,19 @@
 
 namespace heatsoak::derate {
 
-/// Inputs of the observer without power, in the order of observed::Signal, by FirmwareInput::without_power: no current, speed or airflow,
-/// the hottest air, a neighbour at the winding limit, and 0 for an age, which is any of ages_without_power_h().
+/// Returns the inputs of the observer without power, in the order of observed::Signal, as FirmwareInput::without_power states them.
+/// Current, speed and airflow are 0, the air is the hottest, and the neighbour is at the winding limit. The age is 0 here; callers set it
+/// to each of ages_without_power_h().
 std::array<double, observed::kSignalCount> signals_without_power(const Derating& derating);
 
 /// Possible ages of the motor in h. Whether a high or a low one is worse depends on the law and on the node, so each node takes the largest
 /// rate over all of them. Empty if no law depends on the age.
 std::vector<float> ages_without_power_h(const Derating& derating);
 
-/// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. They
-/// bound what a restored guard may assume of time that it does not simulate: temperatures that are at most c ≥ 0 above these stay so for
-/// ever. `rate_steps`: the observer's rates with or without the safety factor on heat. If this does not hold for the laws of the motor, the
-/// rise over the air is enlarged until it does; if that does not help, the result is the winding limit.
+/// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. A
+/// restored guard uses them for time that it does not simulate. Nodes that are all at most c ≥ 0 K above these temperatures never get
+/// further above them. Where the laws of the motor do not ensure this, the rise over the air is enlarged until they do; if that does not
+/// help, the result is the winding limit. `rate_steps`: the observer's rates with or without the safety factor on heat.
 std::vector<double> resting_C(const Derating& derating, std::span<const int> rate_steps);
 
 /// Largest number of steps of a generated restore: cool-down in Runge-Kutta steps, and heating of unsaved time in periods of the guard.

@@ -22,8 +22,8 @@ struct CurrentRamp {
   [[nodiscard]] double current_A(double signal_C) const;
 };
 
-/// Upper bound in A of any ramp at a temperature of its signal: the smallest current of the table over all speeds up to
-/// rules.most_speed_rad_per_s and over every value of the temperature that the ramp does not measure.
+/// Returns the largest current in A that any ramp may give at a temperature of its signal. It is the smallest current of the table over all
+/// speeds up to rules.most_speed_rad_per_s and over the temperature that the ramp does not measure.
 /// stator: over every winding temperature up to the limit. The smallest current occurs with the winding at its limit, where it stops
 /// heating (Nagumo 1942), so a ramp below it keeps the limit for any load before. A continuous load loses nothing, because the winding
 /// settles long before the stator. Only short peaks of a cold winding are lost.
@@ -50,9 +50,12 @@ struct RampLoss {
 };
 RampLoss ramp_loss(const Derating& derating, RampSignal signal, const CurrentRamp& ramp);
 
-/// Returns the fitted ramp for the named controller. Throws Failure (bad_input), with the names of controller and effect, if no ramp can
-/// protect the motor: the motor exceeds its limit without current at some speed; a node without a sensor heats the winding (ramp over the
-/// stator); the stator has a limit (ramp over the winding); or no current is allowed in the hottest air.
+/// Returns the fitted ramp for the named controller. Throws Failure (bad_input) that names controller and effect if no ramp can protect the
+/// motor:
+/// - the motor exceeds its limit without current at some speed;
+/// - a node without a sensor heats the winding (ramp over the stator);
+/// - the stator has a limit (ramp over the winding);
+/// - no current is allowed in the hottest air.
 CurrentRamp ramp_for(std::string_view controller, const Derating& derating, RampSignal signal, double full_beyond_K = 0.0);
 
 }  // namespace heatsoak::derate

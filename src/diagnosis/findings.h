@@ -50,9 +50,9 @@ using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ca
                                       calibration::HeatInputLacking, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
-class NoHeatInput : public base::Failure {
+class NothingHeatsModel : public base::Failure {
  public:
-  explicit NoHeatInput(const std::string& motor);
+  explicit NothingHeatsModel(const std::string& motor);
 };
 
 /// Thrown if not even the extended model follows the runs: effects found in them would be meaningless.

@@ -20,7 +20,8 @@
 
 namespace heatsoak::diagnosis {
 
-NoHeatInput::NoHeatInput(const std::string& motor) : base::Failure(base::ExitCode::bad_input, "no log has a heat input for " + motor) {}
+NothingHeatsModel::NothingHeatsModel(const std::string& motor)
+    : base::Failure(base::ExitCode::bad_input, "no log has a heat input for " + motor) {}
 
 namespace {
 
@@ -37,7 +38,7 @@ void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<r
   const bool has_heat = std::ranges::any_of(
       signals.found, [](thermal::Signal each) { return each == thermal::Signal::current || each == thermal::Signal::input_power; });
   if (!has_heat) {
-    throw NoHeatInput(motor.id);
+    throw NothingHeatsModel(motor.id);
   }
   out.how.needed = std::move(signals.found);
   std::ranges::move(signals.missing, std::back_inserter(out.findings));

@@ -38,8 +38,8 @@ motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model,
 void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
                  const calibration::PredictionOptions& options, HoldoutScore& score);
 
-/// Returns the fitted parameters of the file `before` whose value in `after` is outside the range that `before` declares. The interval of
-/// an earlier fit is no declared range.
+/// Returns the fitted parameters whose value in `after` is outside the range (`spread`) that the file `before` declares. The interval of a
+/// measured value is the result of an earlier fit and no declared range.
 std::vector<calibration::OutsideDeclaredRange> outside_declared_ranges(const motor::Motor& before, const ModelOfLogs& model,
                                                                        const motor::Motor& after);
 

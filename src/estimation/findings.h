@@ -37,9 +37,9 @@ struct TooFewIntervals {
   double interval_s = 0.0;  ///< longest interval to which rows are merged
 };
 /// Parts between rows with unknown values have too few rows.
-struct IntervalsTooShort {};
+struct UsablePartsTooShort {};
 /// Reason why rows are not used.
-using LossOfRows = std::variant<GapsSplitRows, RowsLack, TooFewIntervals, IntervalsTooShort>;
+using LossOfRows = std::variant<GapsSplitRows, RowsLack, TooFewIntervals, UsablePartsTooShort>;
 
 /// A temperature is not used as a sensor, because its value never changes.
 struct SensorNeverChanges {

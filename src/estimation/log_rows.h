@@ -19,11 +19,11 @@ std::string_view words_of(thermal::Signal signal);
 /// Returns whether the channel exists and has a value in any row.
 bool has_values(const recording::Channel* channel);
 
-/// Returns the value of a signal in an operating point, in SI units (°C for temperatures, h for age).
+/// Returns the value of a signal in an operating point, in the unit of thermal::kQuantities.
 double quantity_of(const thermal::OperatingPoint<double>& at, thermal::Signal signal);
 
 /// Operating points of single rows; NaN if a logged quantity has no value there. The surroundings are coolant_C if the log has it, else
-/// ambient_C, with gaps of less than Thresholds::slow_s interpolated. Recording and options must outlive this object.
+/// ambient_C, interpolated where two values are less than 60 s apart (Thresholds::slow_s). Recording and options must outlive this object.
 class LogRows {
  public:
   LogRows(const recording::Recording& recording, const MeasuredRunOptions& options);
@@ -45,7 +45,8 @@ class LogRows {
   const std::vector<double>*current_A_, *speed_rad_per_s_, *torque_Nm_, *bus_V_, *modulation_;
   /// Columns in the order of the table of quantities; null if the log lacks one, or if the quantity is computed.
   std::array<const std::vector<double>*, thermal::kQuantityCount> columns_{};
-  std::array<std::vector<double>, thermal::kQuantityCount> bridged_{};  ///< columns that are no heat input, with short gaps filled
+  std::array<std::vector<double>, thermal::kQuantityCount>
+      bridged_{};  ///< columns that are no heat input, interpolated where values are less than 60 s apart
   std::vector<double> surroundings_C_;
   bool is_signed_;  ///< current and speed both have negative values
   bool is_driven_;  ///< the current exceeds least_current_A at any time

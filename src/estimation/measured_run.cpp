@@ -199,7 +199,7 @@ class Builder {
     if (reasons.empty()) {
       const double whole_s = recording_.time_s.back() - recording_.time_s.front();
       reasons.push_back(all_.runs.empty() ? LossOfRows(TooFewIntervals{whole_s, least_samples() - 1, options_.longest_step_s})
-                                          : LossOfRows(IntervalsTooShort{}));
+                                          : LossOfRows(UsablePartsTooShort{}));
     }
     return reasons;
   }

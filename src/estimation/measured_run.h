@@ -20,13 +20,13 @@ namespace heatsoak::estimation {
 struct Sensor {
   std::string signal;    ///< key in the recording, for example "winding_C"
   std::string node;      ///< node of the network
-  double noise_K = 0.0;  ///< standard deviation of one merged sample, at least 0.01 K, model-free estimate, quantisation included
+  double noise_K = 0.0;  ///< standard deviation of one merged sample, quantisation included: a model-free estimate, at least 0.01 K
   double step_K = 0.0;   ///< resolution; 0 if no quantisation is visible
   std::vector<motor::SensorFault> faults = {};  ///< stated faults of this sensor
 };
 
-/// Uncertainty from missing rows or blank cells while the inputs changed, and from short pulses between equal ends: over `interval` the
-/// inputs may have been `other` instead of at[interval], or equally far in the other direction.
+/// Uncertainty of the inputs over one interval: they may have been `other` instead of at[interval], or equally far in the other direction.
+/// Its causes are missing rows or blank cells while the inputs changed, and short pulses between equal ends.
 struct UnknownInputs {
   Eigen::Index interval = 0;
   thermal::OperatingPoint<double> other;
@@ -71,7 +71,8 @@ struct ShaftTorque {
 struct MeasuredRunOptions {
   /// Longest interval that rows are merged to; the merged inputs conserve heat. Rows are kept if their mean spacing is at least half of it.
   double longest_step_s = 2.0;
-  /// Heat inputs that the model needs. The run is split if one of them is unknown for longer than both 10 s and three usual steps.
+  /// Signals that the model needs: heat inputs, and the signals of its effects. A run ends where one of them is unknown for longer than
+  /// both 10 s and three usual steps.
   std::vector<thermal::Signal> needed = {};
   /// The logged current is not read, because the heat comes from another input, which contains the copper loss.
   bool ignores_current = false;
@@ -100,10 +101,12 @@ bool has_signal(const recording::Recording& recording, thermal::Signal signal, c
 /// Returns the columns that a recording lacks for a comparison with the model: needed signals, the surroundings' temperature, any sensor.
 std::vector<base::Diagnostic> lacking_columns(const recording::Recording& recording, const MeasuredRunOptions& options);
 
-/// Splits a recording into runs whose inputs are known. Merged temperatures are means over ± a tenth of longest_step_s around the sample,
-/// NaN if the row at the end of the interval has none. Sensors are winding_C and stator_C, without it housing_C.
-/// Throws Failure: bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval
-/// if no segment with all of them is left.
+/// Splits a recording into runs whose inputs are known. These runs replace those of the recording, which are split at every gap of more
+/// than three usual steps: they are joined again across gaps of at most 10 s in which no temperature changes by more than
+/// Thresholds::jump_K. A merged interval ends at a row of the log. Its temperature is the mean over the rows within ± 0.1 · longest_step_s
+/// of that row, or NaN if the cell of that row is blank. Sensors are winding_C and stator_C, without it housing_C. Throws Failure:
+/// bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval if no segment with all of them
+/// is left.
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options);
 
 /// Merges every `merged` intervals into one with the same heat. Readings are not averaged; log columns are dropped.

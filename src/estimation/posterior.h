@@ -24,13 +24,13 @@ struct PosteriorOptions {
   LatentFlux flux;
   std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all 1
   std::vector<int> merged = {};               ///< per run, number of samples per average; empty: no averaging
-  /// Per run, noise of the sensors in place of their own; its weights apply, too. Not together with averaging. Empty: their own.
+  /// Noise and sample weights of the sensors per run, which replace those of the runs. Empty: those of the runs. Not with `merged`.
   std::vector<SensorNoise> noise = {};
   double white_noise_K = 0.0;  ///< if > 0, noise of every sensor in place of its own, for an incomplete model
   int most_steps = 8;          ///< largest number of Gauss-Newton steps
-  /// The covariance of the residuals depends on the parameters. true: a step is judged by the covariance before it, as in iteratively
-  /// reweighted least squares, and a step that fails is searched for in a smaller box. false: it is judged by the covariance after it, and
-  /// a step that fails is halved.
+  /// Chooses the covariance of the residuals, which depends on the parameters, for the test whether a step improves the fit. true: the
+  /// covariance before the step, as in iteratively reweighted least squares; a rejected step is replaced by one within a smaller box.
+  /// false: the covariance after the step; a rejected step is halved.
   bool holds_covariance = false;
   std::optional<int> held = {};                                         ///< coordinate that keeps its start value
   double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< largest change of a coordinate in one step

@@ -2,9 +2,9 @@
 // acts on the nodes in addition to the modelled heat.
 //
 // The flux is an Ornstein-Uhlenbeck process in the differential equation, one per node. One sequence of Kalman gains serves the
-// residual, the sensitivities and the responses to candidate effects (de Jong 1991, the augmented Kalman filter): the whitening is a
-// linear operator, and everything after it is least squares. A sensor may also drift: it then has an Ornstein-Uhlenbeck error of its
-// own, which adds no heat.
+// residual, the sensitivities and the responses to candidate effects (de Jong 1991, the augmented Kalman filter). The whitening is
+// therefore a linear operator, and everything after it is least squares. A sensor may also drift: it then has an Ornstein-Uhlenbeck error
+// of its own, which adds no heat.
 #pragma once
 
 #include <Eigen/Core>

@@ -56,8 +56,8 @@ void require_driving_current(const robot::Robot& robot, const motor::Motor& moto
 
 /// Returns the heating of the winding by one full stop from the speed limit with the braking limit, in K: Σ over the stop of the observer's
 /// dT_w/dt. All bodies and the air have the winding's limit. The result is an adiabatic heating, ∫I²·R(T_limit) dt·(safety factor on
-/// heat)/C_w, plus the heat of the motor file's effects. I is that of the wheel and direction of travel with the largest force; friction,
-/// drag and gear losses are neglected, because they would help to brake: (r·F_i + J·dω_i/dt)/(K_t·n), at most the current limit.
+/// heat)/C_w, plus the heat of the motor file's effects. I is (r·F_i + J·dω_i/dt)/(K_t·n), at most the current
+/// limit, for the wheel and direction of travel with the largest force. Friction, drag and gear losses are neglected: they help to brake.
 /// Needs the tables that make_core_config() needs.
 double braking_reserve_K(const robot::Robot& robot, const motor::MotorValues& motor, const derate::Derating& derating);
 

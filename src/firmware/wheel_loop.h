@@ -35,12 +35,13 @@ struct WheelLoopGains {
 /// Computes the gains. Plant of one wheel: τ·dω/dt = V/(K_t·n) − ω with τ = J·R/(η·(K_t·n)²). Control: V = k_p·e + k_i·∫e dt. Closed loop
 /// of the loaded wheel:
 ///   s² + (1 + k_p/(K_t·n))/τ·s + k_i/(τ·K_t·n) = s² + 2·ζ·ω_0·s + ω_0²,   ζ = 1.
-/// The delay between motion and voltage is L = 2·T, T the control period: one period to compute, half of one because the voltage is held,
-/// half of one because an encoder gives the mean speed of the last period. Two bounds set the bandwidth; the lower gain counts:
+/// The delay between motion and voltage is L = 2·T, with the control period T. One period is the computation, half of one the held voltage,
+/// and half of one the encoder, which gives the mean speed of the last period. Two bounds set the bandwidth; the lower gain counts:
 ///  1. Loaded wheel: ω_0·L ≤ 0.2, so that the delay takes at most 2·ω_0·L = 23° of phase at the crossover.
-///  2. Wheel in the air, or one that slides: its inertia is J_wheel alone. With the loop gain κ = k_p·T/(J_wheel·R/(K_t·n)) and the delays
-///     above, the loop of an integrator is z²·(z − 1) + κ·(z + 1)/2, which oscillates at κ_u = 2·tan(π/8) = 0.828 and a frequency of π/4
-///     per period. k_p is at most that of κ_u/3 (gain margin 3), and at most κ_u/2 with the body loop on top, which sees the same wheels.
+///  2. Wheel in the air, or one that slides: its inertia is J_wheel alone. The loop gain is κ = k_p·T/(J_wheel·R/(K_t·n)). With
+///     the delays above, the loop of an integrator is z²·(z − 1) + κ·(z + 1)/2. It oscillates at κ_u = 2·tan(π/8) = 0.828, with a
+///     frequency of π/4 per period. k_p is at most that of κ_u/3 (gain margin 3), and at most κ_u/2 with the body loop on top, which sees
+///     the same wheels.
 /// k_i follows from ω_0 = (1 + k_p/(K_t·n))/(2·ζ·τ).
 /// The body loop closes over the wheels' speeds through the feed-forward m·a: it adds κ_b = b·T·(m·r²·λ + J_wheel)/J_wheel in the air. b is
 /// a quarter of the wheel loop's rate 2·ζ·ω_0, or the rest up to κ_u/2, if that is less. The yaw loop closes over the gyro, which does not

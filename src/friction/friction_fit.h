@@ -12,14 +12,14 @@
 
 namespace heatsoak::friction {
 
-// In steady motion  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
-// A wheel that should stand by geometry carries no information and is omitted, as in the paper.
-// The other wheels turn in their rolling direction, so the sign is known. With S = sin(θ + φ_0), C = cos(θ + φ_0) and φ_0 the
-// phase of the rolling direction, the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation),
-// a = ±√(A² + B²) and φ = φ_0 + atan(B/A). The fit is robust over all parts of a wheel (robust_fit.h). Legs are clusters if
-// there are three per term. The interval of φ is Fieller's. It is cut off at the φ for which a wheel would have to turn the
-// other way than measured; there a and b are the best ones for that φ. Headings in only two directions and their opposites do
-// not determine φ: then φ = φ_0, and the intervals of a and b cover the uncertainty of φ.
+// Law of a wheel in steady motion:  V_i = d_i·ω_i + f_i(θ),  f_i(θ) = a_i·sin(θ + φ_i) + b_i·sign(sin(θ + φ_i)).
+// Parts in which the wheel should stand by geometry carry no information and are omitted, as in the paper. In the others the wheel turns in
+// its rolling direction, so the sign is known. Let φ_0 be the phase of the rolling direction, S = sin(θ + φ_0) and C = cos(θ + φ_0). Then
+// the law is linear:  V = d·ω + A·S + B·C + b·sign S  (+ c·sign ω in rotation). Its solution gives a = ±√(A² + B²), φ = φ_0 + atan(B/A).
+// The fit is robust over all parts of a wheel (robust_fit.h). Legs are clusters if there are three per term.
+// The interval of φ is Fieller's. It ends at the φ beyond which the law would turn the wheel against its measured sense. A φ there is kept
+// at this end, and a and b are the best ones for it.
+// Headings in only two directions and their opposites do not determine φ. Then φ = φ_0, and the intervals of a and b cover its uncertainty.
 // If the residuals depend on θ, the intervals are widened by the part of that error that a and b may contain (lack_of_fit.h).
 
 /// Model error that depends on the direction of travel (lack_of_fit.h).

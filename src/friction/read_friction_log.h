@@ -27,8 +27,8 @@ struct FrictionLogNeeds {
 };
 
 /// Converts speeds of motor shafts to speeds of wheels, and directions on the field to directions in the robot's frame. The voltage is
-/// wheel_voltage_V, else wheel_pwm_ratio × battery_V (or bus_V, or the robot's nominal voltage), else R·I + K_t·n·ω with
-/// I = wheel_current_A, which gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns. Adds to
+/// wheel_voltage_V, else wheel_modulation_ratio × battery_V (or bus_V, or the robot's nominal voltage), else R·I + K_t·n·ω. I is
+/// wheel_current_A; it gets the sign of the speed if it has none. Throws Failure (bad_input) with all missing columns. Adds to
 /// `findings` how it read the columns.
 FrictionLog friction_log(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
                          FrictionFindings& findings);

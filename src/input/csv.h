@@ -1,4 +1,5 @@
-// Reads chosen columns of a CSV file row by row and reports the place of each error. libcsv handles the quoting.
+// Reads chosen columns of a CSV file row by row and reports the place of each error. libcsv handles the quoting. Serves duties of type
+// `recorded`, games as CSV and committed derating tables. Logs of measurements are read by input/number_table.h.
 #pragma once
 
 #include <filesystem>

@@ -148,8 +148,8 @@ MotorSample nominal_sample(const Motor& motor);
 MotorSample draw_sample(const Motor& motor, base::Random& random);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances
-/// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise: `datasheet` if every thermal value is
-/// measured or from the data sheet; `estimated` if one of the four, the winding limit or a parameter of an effect is an estimate; else
+/// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise `datasheet` if every thermal value is
+/// measured or from the data sheet. `estimated` if one of the four, the winding limit or a parameter of an effect is an estimate. Else
 /// `mixed`.
 std::string_view data_quality(const Motor& motor);
 

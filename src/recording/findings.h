@@ -123,14 +123,14 @@ struct StartsInOtherScale {
   double converted_C = 0.0;  ///< the same value read in the suspected scale
   TemperatureScale suspected = TemperatureScale::fahrenheit;
 };
-/// All temperatures of the motor start alike, far above the air, but at its temperature if read as degrees Fahrenheit.
+/// All temperatures of the motor start at one value far above the air. Read as degrees Fahrenheit, it is the temperature of the air.
 struct MotorStartsInFahrenheit {
   std::string channel;  ///< the first of these temperatures
   double start_C = 0.0;
   double converted_C = 0.0;
   double ambient_C = 0.0;
 };
-/// Without heat, the motor approaches a value far above the air, but the air's temperature if read as degrees Fahrenheit.
+/// Without heat, the motor approaches a value far above the air. Read as degrees Fahrenheit, it is the temperature of the air.
 struct MotorCoolsInFahrenheit {
   std::string channel;  ///< the first temperature of the motor
   double rest_C = 0.0;
@@ -145,7 +145,7 @@ using Suspicion =
                  ConstantSensor, StaysAtLimit, AmbientAboveMotor, FallsWhileHeated, StatorRespondsFaster, StatorHotterAtRest,
                  StatorWarmsFirst, StartsInOtherScale, MotorStartsInFahrenheit, MotorCoolsInFahrenheit>;
 
-/// Returns whether both are of one kind and about the same channels. Their numbers may differ, as between a log and a part of it.
+/// Returns whether both are of one kind and about the same channels. Their numbers may differ: a log and a part of it give other numbers.
 bool have_one_subject(const Suspicion& a, const Suspicion& b);
 
 /// Suspicion about one of several logs.

@@ -64,7 +64,7 @@ Fitness thermal_fitness(const Recording& recording, std::size_t rows, const Data
                                               : Lack(TemperatureWithinNoise{one.quantity.key, one.low, one.high, one.noise}));
   }
   // Without heat, the time constants are still identifiable from a cool-down.
-  if (!inputs.empty() && !cools_down(recording, temperatures) && heat_input_of(recording) == nullptr &&
+  if (!inputs.empty() && !cools_down(recording, temperatures) && most_direct_heat_input(recording) == nullptr &&
       std::ranges::all_of(inputs, [](const ChannelQuality* channel) { return channel->high == 0.0 && channel->low == 0.0; })) {
     fitness.lacks.emplace_back(HeatInputIsZero{inputs.front()->quantity.key});
   }
@@ -96,7 +96,7 @@ Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
 
 }  // namespace
 
-const Channel* heat_input_of(const Recording& recording) {
+const Channel* most_direct_heat_input(const Recording& recording) {
   for (const std::string_view key : kHeatInputs) {
     const Channel* const channel = recording.find(key);
     if (channel == nullptr) {
@@ -218,7 +218,7 @@ DataQuality Assessment::conclude(const RecordingReport& report, std::optional<do
   }
   sampling.jitter_s = 1.4826 * median_of(std::move(deviations_s));
   report_channels(report);
-  if (const Channel* const heat_input = heat_input_of(rows)) {
+  if (const Channel* const heat_input = most_direct_heat_input(rows)) {
     for (const Channel& channel : rows.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
         quality_.clock_offsets.push_back(clock_offset(rows, channel, *heat_input, find(quality_, channel.quantity.key)->noise));

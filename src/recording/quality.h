@@ -148,8 +148,9 @@ class RowsGivenTwice : public base::Failure {
   std::vector<Pair> pairs_;
 };
 
-/// Returns the varying channel that heats the winding most directly: current, else power, torque, voltage, speed; nullptr if none varies.
-const Channel* heat_input_of(const Recording& recording);
+/// Returns the first channel of kHeatInputs that varies, the one that heats the winding most directly; nullptr if none varies. Checks
+/// compare temperatures with it. The heat of a model is another choice: calibration::heat_input_of().
+const Channel* most_direct_heat_input(const Recording& recording);
 
 /// Returns the heat per row up to a factor: the channel itself if it is a power, else its square. NaN if not known.
 std::vector<double> relative_heat(const Channel& heat_input);

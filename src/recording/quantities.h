@@ -31,10 +31,14 @@ struct QuantityType {
 };
 std::span<const QuantityType> quantity_types();
 
-/// Keys of the heat inputs that checks of a log use as a measure of its heat, in descending order of how directly they heat a winding: the first five heat the winding first, the last two imply
-/// no heat by themselves.
+/// Heat inputs that checks of a log use as a measure of its heat, most direct first. Other columns of QuantityKind::heat_input, such as
+/// motor_d_V or power_out_W, say less about the heat and are not used for this.
 inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
                                                              "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
+/// The first ones heat the winding before the iron. Voltages and speed can act without load, and then heat the iron.
+inline constexpr std::size_t kWindingHeatInputs = 5;
+/// The first ones imply that no heat is produced where they are 0. Supply voltage and speed do not: a current may flow at standstill.
+inline constexpr std::size_t kHeatInputsZeroAtRest = 7;
 
 /// Quantity of a channel, derived from its name.
 struct Quantity {
@@ -45,7 +49,7 @@ struct Quantity {
   std::string meaning;  ///< empty if the table does not have it
 };
 
-/// Returns the quantity from the table, or a free one whose name ends in a unit ("thrust_N", "flow_m3_per_s", "valve_ratio"). nullopt if
+/// Returns the quantity from the table, or a free one whose name ends in a unit ("thrust_N", "flow_kg_per_s", "valve_ratio"). nullopt if
 /// the name does not end in a unit.
 std::optional<Quantity> quantity_named(std::string_view key);
 

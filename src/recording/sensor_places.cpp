@@ -14,10 +14,8 @@ namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kEnoughBlocks = 10;
-/// Signals that heat the winding first. Voltage and speed are not among them: without load they heat the iron.
-constexpr std::span kWindingHeats = std::span(kHeatInputs).first<5>();
-/// Signals that imply no heat if they are zero.
-constexpr std::span kHeats = std::span(kHeatInputs).first<7>();
+constexpr std::span kWindingHeats = std::span(kHeatInputs).first<kWindingHeatInputs>();
+constexpr std::span kHeats = std::span(kHeatInputs).first<kHeatInputsZeroAtRest>();
 
 /// Returns the first of these channels that the log has, even if it is constant; nullptr if there is none.
 const Channel* first_of(const Recording& recording, std::span<const std::string_view> keys) {

@@ -27,8 +27,8 @@ struct BodyConfig {
 /// torque and roller drag.
 BodyConfig make_body(const Robot& robot, const motor::MotorValues& motor);
 
-/// Returns the force and the moment about the origin for an acceleration of the origin, local axes:
-/// F = m·(a + dω/dt × c − ω²·c), M = I·dω/dt + c × F, with c the offset of the centre of gravity.
+/// Returns the force and the moment about the origin for an acceleration of the origin, in local axes. With c the offset of the centre of
+/// gravity, F = m·(a + dω/dt × c − ω²·c) and M = I·dω/dt + c × F.
 Wrench wrench_of_acceleration(const BodyConfig& body, double yaw_rad_per_s, const BodyAcceleration& acceleration);
 /// Inverse of wrench_of_acceleration().
 inline BodyAcceleration acceleration_of_wrench(const BodyConfig& body, double yaw_rad_per_s, const Wrench& wrench) {

@@ -63,8 +63,8 @@ inline constexpr int kMostWheels = 4;
 /// One value per wheel, wheel 1 first; the fourth is 0 for a robot with three wheels.
 using PerWheel = std::array<double, kMostWheels>;
 
-/// Directions of one wheel, from its axle angle α (robot file, `axis_angles`): the axle points outward along
-/// e = (cos α, sin α), the contact point lies at contact radius · e, and the wheel rolls along t = (−sin α, cos α),
+/// Directions of one wheel, from its axle angle α (robot file, `axis_angles`). The axle points outward along
+/// e = (cos α, sin α), and the contact point lies at contact radius · e. The wheel rolls along t = (−sin α, cos α),
 /// which is e turned a quarter counter-clockwise. A positive wheel speed moves the contact point along +t, so that
 /// all wheels positive turn the robot counter-clockwise. A motor's speed and torque have the wheel's sign.
 ///

@@ -102,8 +102,8 @@ struct MotorEvaluation {
   TemperatureCurves curves;
 };
 
-/// Returns the number of draws for `samples` samples: one for every eight, because playing a game takes about a hundred times as long as
-/// evaluating eight samples of it; 0 for a duty without unknown parameters.
+/// Returns the number of draws for `samples` samples: one for every eight, or 0 for a duty without unknown parameters. Playing a game takes
+/// about a hundred times as long as evaluating eight samples of it.
 int draw_count(const duty::Duty& duty, int samples);
 
 /// Returns the demand of the most loaded wheel for each draw. The result does not depend on `threads`.

@@ -34,8 +34,8 @@ class RoundPlan {
   RoundPlan(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
             std::span<const motor::Motor> motors, int most, const RoundsProgress& progress);
 
-  /// Declares the first round. If somebody watches a job with drawn games, it plays a few games first and evaluates some motors in them,
-  /// which shows what will follow; `draws` receives these games, which the first round needs anyway.
+  /// Declares the first round. If progress of a job with drawn games is shown, a few games are played first, and some motors are evaluated
+  /// in them, to estimate the durations of the rounds. `draws` receives these games, which the first round needs anyway.
   void foresee(EvaluateOptions options, std::vector<duty::WheelDemand>& draws) const;
   /// Declares the later rounds from the results of a round with `samples` samples.
   void update(std::span<const MotorEvaluation> results, int samples) const;

@@ -17,8 +17,7 @@ inline constexpr std::size_t kLogColumns = 3;
 
 /// Means over one interval, chosen so that intervals can be merged without changing the heat: I²R uses the RMS current, a loss ∝ |ω| the
 /// mean speed, one ∝ ω² the RMS speed. Products such as |I|·ω² use the product of the means. That is accurate if the interval is short
-/// compared with load changes, like the rows of a log. The default of a quantity is the assumption without a
-/// measurement.
+/// compared with load changes, like the rows of a log. A quantity that is not measured keeps its default.
 template <class S>
 struct OperatingPoint {
   using Scalar = S;
@@ -46,13 +45,14 @@ struct OperatingPoint {
   S second_column = S(0.0);
   S third_column = S(0.0);
   S copper_loss_W = S(0.0);  ///< copper loss of the network, which its drive stage sets before the laws are evaluated
-  QuantitySet known = 0;      ///< optional quantities that are known, equal for all samples of Lanes; see set_quantity()
+  QuantitySet known = 0;     ///< optional quantities that are known, equal for all samples of Lanes; see set_quantity()
 
   [[nodiscard]] constexpr bool knows(QuantitySet quantities) const { return (known & quantities) == quantities; }
 };
 
-/// Signals that a law may need besides the temperatures of its nodes and of the surroundings. A log without one of them holds no evidence
-/// about the law. The copper loss is computed from the current; velocity and acceleration need the speed.
+/// Signals of a log that a law may need besides the temperatures of its nodes and of the surroundings. A log without one of them holds no
+/// evidence about the law. The inputs of the guard in the firmware are other ones: derate::observed::Signal. The copper loss is computed
+/// from the current; velocity and acceleration need the speed.
 enum class Signal { current, speed, shaft_power, input_power, modulation, bus_voltage, vehicle_speed, neighbour_temperature, age };
 
 /// Rule for averaging a quantity over time. `rms` averages its square. `limit`: not averaged; a merged interval has the default, no limit.
@@ -98,16 +98,16 @@ struct OperatingQuantity {
   S OperatingPoint<S>::*value;
   std::string_view name;             ///< in messages with spaces: "shaft power"
   std::string_view unit;             ///< UDUNITS text, also the unit of `column`
-  std::optional<double> usual = {};  ///< value of a hot motor under load, in SI units (°C, h); none: the default
+  std::optional<double> usual = {};  ///< value of a hot motor under load, in `unit`; none: the default
   AveragingRule averaging = AveragingRule::mean;
-  bool is_motion = false;  ///< varies with the motion, independently of the torque
+  bool is_motion = false;  ///< depends on the motion alone; for gaps, in which motion and torque are unknown independently
   std::optional<Signal> signal = {};
   std::string_view column = {};  ///< log column of the signal; one quantity of each signal has it
   FromColumn from = FromColumn::computed;
   std::string_view lacking = {};   ///< words of the message about a log without the signal
   bool is_input_signal = false;    ///< can be the input signal of a measured curve (effect `tabulated`)
   std::string_view meaning = {};   ///< description as an input signal
-  bool is_range_compared = false;  ///< forecasts beyond the range of the training runs get a warning
+  bool is_range_compared = false;  ///< `diagnose` warns if hold-out runs leave its range in the training runs
   std::optional<FirmwareInput> firmware = {};
   bool is_optional = false;  ///< valid only if OperatingPoint::known has its bit, because no default is safe, as for a temperature
 };
@@ -158,7 +158,7 @@ constexpr std::size_t log_columns_of(std::size_t signal) {
   return count;
 }
 
-/// Number of signals: one more than the last enumerator in the table. An enumerator without a row is not counted.
+/// Number of enumerators of Signal: one more than the last enumerator in the table. An enumerator without a row is not counted.
 inline constexpr std::size_t kSignalCount = [] {
   std::size_t count = 0;
   for (const OperatingQuantity<double>& each : kQuantities<double>) {

@@ -303,14 +303,14 @@ TEST(WordsOfRuns, NotesAndReasons) {
             "gaps split its 20 rows into 2 runs ([runs] longest_gap of a mapping sets what counts as a gap), "
             "1 of 20 rows have no ambient temperature within a minute, 2 of 20 rows have no temperature of winding or stator");
   EXPECT_EQ(words_of(std::vector<LossOfRows>{TooFewIntervals{12.0, 9, 2.0}}), "its 12 s make fewer than 9 intervals of 2 s");
-  EXPECT_EQ(words_of(std::vector<LossOfRows>{IntervalsTooShort{}}), "intervals are too short");
+  EXPECT_EQ(words_of(std::vector<LossOfRows>{UsablePartsTooShort{}}), "intervals are too short");
 }
 
 TEST(WordsOfFailures, OfRunsAndDiagnoses) {
-  EXPECT_EQ(in_words(estimation::NoUsableInterval("run1", "logs/run1.csv", 10, {estimation::IntervalsTooShort{}})).message(),
+  EXPECT_EQ(in_words(estimation::NoUsableInterval("run1", "logs/run1.csv", 10, {estimation::UsablePartsTooShort{}})).message(),
             "run1: no interval of 10 rows or more has temperatures and all heat inputs: intervals are too short; see `heatsoak log inspect "
             "logs/run1.csv`");
-  const base::Failure heat = in_words(diagnosis::NoHeatInput("ecx"));
+  const base::Failure heat = in_words(diagnosis::NothingHeatsModel("ecx"));
   EXPECT_EQ(heat.code(), base::ExitCode::bad_input);
   EXPECT_EQ(heat.message(),
             "no log has a heat input for ecx; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");

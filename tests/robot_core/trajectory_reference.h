@@ -1,5 +1,5 @@
-// Reference for a trajectory planner without any of its formulas: seeded problems, a walk along the result, a search through all switching
-// structures by plain bisection, and a bound that proves a duration too short.
+// Reference for a trajectory planner without any of its formulas. It has seeded problems, a walk along the result, and a search through all
+// switching structures by plain bisection. A bound proves durations that are too short.
 #pragma once
 
 #include <optional>

@@ -67,7 +67,7 @@ TEST(TwoWrongSensors, DriveNoMoreCurrentThanAllowed) {
       std::printf("scale %5.2f, currents %d: %.2f A above the limit, %.3f wheel-seconds of 1920\n", static_cast<double>(scale),
                   are_currents_fitted ? 1 : 0, worst.largest_A, worst.wheel_s);
       if (scale > 1.0F) {
-        // While only one, correct, sensor is rejected, or one agrees by chance, the limits trust wrong speeds: reason.h lists it.
+        // While only one, correct, sensor is rejected, or one agrees by chance, the limits trust wrong speeds: docs/firmware.md lists it.
         EXPECT_LE(worst.largest_A, 8.0) << scale << (are_currents_fitted ? " with currents" : "");
         EXPECT_LE(worst.wheel_s, 0.6) << scale << (are_currents_fitted ? " with currents" : "");
       } else {

@@ -87,8 +87,8 @@ struct LastingCurrent {
 struct SensorPlan {
   SensorOptions options;
   std::optional<ResistanceReading> resistance = {};
-  /// Observer with the lower safety factor. The heat capacity of its winding is divided by winding_speed_ratio, so that a pulse from cold
-  /// heats it at least as fast as without a sensor, because a sensor at the stator responds too late to a pulse.
+  /// Observer with the lower safety factor. A sensor at the stator responds too late to a pulse from cold. The heat capacity of the winding
+  /// is therefore divided by winding_speed_ratio, so that a pulse heats it at least as fast as without a sensor.
   Observer observer;
   double winding_speed_ratio = 1.0;
   CurrentTable table;           ///< table of that observer
@@ -101,7 +101,8 @@ struct SensorPlan {
   int dropped = 0;                      ///< drawn motors of that check whose correct sensor is rejected by the cross-check
   int sensor_fault_over = 0;            ///< drawn motors that exceed a limit with the worst undetected sensor fault
   double sensor_fault_nominal_C = 0.0;  ///< hottest winding of the nominal motor with that fault, from the hottest air temperature
-  double sensor_fault_warm_C = 0.0;     ///< hottest winding with that fault, from any start up to the winding limit with all nodes equally warm
+  double sensor_fault_warm_C =
+      0.0;  ///< hottest winding with that fault, from any start up to the winding limit with all nodes equally warm
 };
 
 }  // namespace heatsoak::derate

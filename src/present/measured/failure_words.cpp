@@ -141,7 +141,7 @@ base::Failure worded(const estimation::NoUsableInterval& failure) {
                                            failure.file().string()));
 }
 
-base::Failure worded(const diagnosis::NoHeatInput& failure) {
+base::Failure worded(const diagnosis::NothingHeatsModel& failure) {
   return with_message(failure,
                       failure.message() + "; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
 }
@@ -189,7 +189,7 @@ base::Failure in_words(const base::Failure& failure) {
   return worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
                    calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
                    friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
-                   diagnosis::NoHeatInput, diagnosis::NoEffectFollows>(failure);
+                   diagnosis::NothingHeatsModel, diagnosis::NoEffectFollows>(failure);
 }
 
 }  // namespace heatsoak::present

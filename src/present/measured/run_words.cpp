@@ -33,7 +33,7 @@ std::string say(const estimation::TooFewIntervals& of) {
                      base::significant(of.interval_s, 2));
 }
 
-std::string say(const estimation::IntervalsTooShort& /*of*/) { return "intervals are too short"; }
+std::string say(const estimation::UsablePartsTooShort& /*of*/) { return "intervals are too short"; }
 
 std::string say(const estimation::SensorNeverChanges& of) {
   return fmt::format("{}: {} is not used as a sensor, because its value never changes", of.recording, of.channel);

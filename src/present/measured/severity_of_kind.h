@@ -1,4 +1,5 @@
-// Severity of a finding by its kind. A kind that is in none of the three lists, or in two, does not compile.
+// Severity of a finding by its kind, for the findings of a calibration and of a diagnosis. A kind that is in none of the three lists, or in
+// two, does not compile.
 #pragma once
 
 #include <type_traits>
