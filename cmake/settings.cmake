@@ -45,7 +45,7 @@ endif()
 
 # add_headers(name header FILES file… LIBRARIES library… OPTIONS option…): a precompiled header for these libraries. It is parsed once for
 # all targets that call use_headers(target name). FILES instantiate the templates that the header declares extern. OPTIONS are those of the
-# targets: GCC optimises a file as it was told for the header.
+# targets: GCC optimises a file with the options of the header.
 function(add_headers name header)
   cmake_parse_arguments(HEADERS "" "" "FILES;LIBRARIES;OPTIONS" ${ARGN})
   if(HEATSOAK_PRECOMPILE)

@@ -1,5 +1,5 @@
 # Writes <generated/source_hash.h> with HEATSOAK_SOURCE_HASH: the first 8 hexadecimal digits of a SHA-256 over the sources that decide numbers.
-# It is part of the program's version, so that a file tells by which algorithms it was written. The same sources give the same hash.
+# It is part of the program's version, so that a file states by which algorithms it was written. The same sources give the same hash.
 file(GLOB_RECURSE hashed CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" robot_core/*.h robot_core/*.cpp src/*.h src/*.cpp src/*.c)
 list(FILTER hashed EXCLUDE REGEX "^src/(cli|present|report)/")
 list(SORT hashed)

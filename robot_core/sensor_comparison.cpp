@@ -202,7 +202,7 @@ void find_responses(const Config& config, State& state, const Validated& validat
   return larger(0.0F, all - explained) / static_cast<float>(config.wheel_count);
 }
 
-/// Returns true if a wheel speed alone contradicts all others, or might: with a sensor less nothing tells which one is wrong.
+/// Returns true if a wheel speed alone contradicts all others, or possibly does: with one sensor less the wrong one cannot be determined.
 /// `apart_rad_per_s`: size of the difference from the speed that the others imply. Leaving the wheel out of the fit lowers the sum of
 /// squared residuals by d²·(1 − leverage), where d is that difference.
 bool is_wrong(const Config& config, const State& state, const Validated& validated, float apart_rad_per_s, float most_rad_per_s, int i) {

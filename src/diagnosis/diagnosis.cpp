@@ -45,7 +45,7 @@ class DiagnosisReport {
     estimation::set_columns(input_.train, out_.selection.after.model.columns);
   }
 
-  Diagnosis tell() {
+  Diagnosis result() {
     input_.progress.begin(attribution::selection_phases::kLastFit);
     for (const attribution::AcceptedTerm& term : out_.selection.terms) {
       if (term.curve && term.effect_name.empty()) {
@@ -281,7 +281,7 @@ void settle_turning_rows(DiagnosisInput& input) {
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules) {
-  return DiagnosisReport(input, attribution::select_effects({input.model, input.train, input.usual, input.progress}, rules)).tell();
+  return DiagnosisReport(input, attribution::select_effects({input.model, input.train, input.usual, input.progress}, rules)).result();
 }
 
 HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout) {

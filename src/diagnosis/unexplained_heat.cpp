@@ -15,16 +15,17 @@ namespace {
 
 class UnexplainedHeatReport {
  public:
-  UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<estimation::MeasuredRun>& train) : told_(diagnosis), train_(train) {}
+  UnexplainedHeatReport(const Diagnosis& diagnosis, const std::vector<estimation::MeasuredRun>& train)
+      : diagnosis_(diagnosis), train_(train) {}
 
   /// Returns the accepted curves or, without one, the node with the most unknown heat.
-  std::vector<Unexplained> tell() {
-    for (const attribution::AcceptedTerm& term : told_.selection.terms) {
+  std::vector<Unexplained> result() {
+    for (const attribution::AcceptedTerm& term : diagnosis_.selection.terms) {
       if (term.curve) {
         add_curve(term);
       }
     }
-    if (heats_.empty() && told_.selection.is_unexplained) {
+    if (heats_.empty() && diagnosis_.selection.is_unexplained) {
       heats_.push_back(most());
     }
     return std::move(heats_);
@@ -40,14 +41,14 @@ class UnexplainedHeatReport {
         most = std::move(heat);
       }
     }
-    const std::vector<attribution::ScanResult>& scan = told_.selection.rounds.back().scan;
+    const std::vector<attribution::ScanResult>& scan = diagnosis_.selection.rounds.back().scan;
     if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats) {
-      most.unconfirmed_signal = told_.selection.regressors[static_cast<std::size_t>(scan.front().term.regressor)].name;
+      most.unconfirmed_signal = diagnosis_.selection.regressors[static_cast<std::size_t>(scan.front().term.regressor)].name;
     }
     return most;
   }
 
-  [[nodiscard]] const estimation::Posterior& after() const { return told_.selection.after; }
+  [[nodiscard]] const estimation::Posterior& after() const { return diagnosis_.selection.after; }
   [[nodiscard]] double time_scale_s() const { return after().flux.time_scale_s; }
 
   [[nodiscard]] bool has_sensor(const std::string& node) const {
@@ -59,9 +60,9 @@ class UnexplainedHeatReport {
   /// Groups the nodes with unknown heat by the node whose sensor shows it: the node itself, or else the first one with a sensor.
   [[nodiscard]] std::map<std::string, std::vector<std::string>> unknown_by_sensor() const {
     std::map<std::string, std::vector<std::string>> shown;
-    const auto first = std::ranges::find_if(told_.flux_rms_after_W, [&](const auto& each) { return has_sensor(each.first); });
-    for (const auto& [node, rms_W] : told_.flux_rms_after_W) {
-      shown[has_sensor(node) || first == told_.flux_rms_after_W.end() ? node : first->first].push_back(node);
+    const auto first = std::ranges::find_if(diagnosis_.flux_rms_after_W, [&](const auto& each) { return has_sensor(each.first); });
+    for (const auto& [node, rms_W] : diagnosis_.flux_rms_after_W) {
+      shown[has_sensor(node) || first == diagnosis_.flux_rms_after_W.end() ? node : first->first].push_back(node);
     }
     return shown;
   }
@@ -73,7 +74,7 @@ class UnexplainedHeatReport {
     std::ranges::copy_if(members, std::back_inserter(heat.or_nodes), [&](const std::string& other) { return other != node; });
     heat.time_scale_s = time_scale_s();
     std::map<std::string, Eigen::VectorXd> of_run_W;
-    for (const FluxTrace& trace : told_.flux) {
+    for (const FluxTrace& trace : diagnosis_.flux) {
       if (std::ranges::find(members, trace.node) != members.end()) {
         const Eigen::Map<const Eigen::VectorXd> own_W(trace.after_W.data(), static_cast<Eigen::Index>(trace.after_W.size()));
         Eigen::VectorXd& sum_W = of_run_W[trace.run];
@@ -95,8 +96,8 @@ class UnexplainedHeatReport {
   /// Reports an accepted curve, with the fitted values of the model if that contains it.
   void add_curve(const attribution::AcceptedTerm& term) {
     const attribution::ScanTerm& scanned = term.curve->term;
-    const attribution::Regressor& regressor = told_.selection.regressors[static_cast<std::size_t>(scanned.regressor)];
-    const auto effect = std::ranges::find(told_.effects, term.effect_name, &FoundEffect::name);
+    const attribution::Regressor& regressor = diagnosis_.selection.regressors[static_cast<std::size_t>(scanned.regressor)];
+    const auto effect = std::ranges::find(diagnosis_.effects, term.effect_name, &FoundEffect::name);
     Unexplained heat;
     heat.node = scanned.node;
     heat.signals = {regressor.name};
@@ -133,7 +134,7 @@ class UnexplainedHeatReport {
     heats_.push_back(std::move(heat));
   }
 
-  const Diagnosis& told_;
+  const Diagnosis& diagnosis_;
   const std::vector<estimation::MeasuredRun>& train_;
   std::vector<Unexplained> heats_;
 };
@@ -141,7 +142,7 @@ class UnexplainedHeatReport {
 }  // namespace
 
 std::vector<Unexplained> unexplained_heat(const Diagnosis& diagnosis, const std::vector<estimation::MeasuredRun>& train) {
-  return UnexplainedHeatReport(diagnosis, train).tell();
+  return UnexplainedHeatReport(diagnosis, train).result();
 }
 
 }  // namespace heatsoak::diagnosis

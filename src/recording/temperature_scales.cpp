@@ -105,11 +105,11 @@ class Scales {
                  percentile(each->values, 0.02) > kColdest_K) {
         found_.emplace_back(StartsInOtherScale{key, start, from_kelvin_C(start), TemperatureScale::kelvin});
       } else if (is_in_fahrenheit(*each)) {
-        is_told_ = is_told_ || each->quantity.kind == QuantityKind::temperature;
+        is_reported_ = is_reported_ || each->quantity.kind == QuantityKind::temperature;
         found_.emplace_back(StartsInOtherScale{key, start, from_fahrenheit_C(start), TemperatureScale::fahrenheit});
       }
     }
-    if (!is_told_) {
+    if (!is_reported_) {
       motor_in_fahrenheit();
       cooling_in_fahrenheit();
     }
@@ -181,7 +181,7 @@ class Scales {
              std::abs(from_fahrenheit_C(start) - room_C) < kAlike_K && never_falls(*sensor, 1.8);
     });
     if (all) {
-      is_told_ = true;
+      is_reported_ = true;
       found_.emplace_back(MotorStartsInFahrenheit{sensors_.front()->quantity.key, first, from_fahrenheit_C(first), room_C});
     }
   }
@@ -189,7 +189,7 @@ class Scales {
   /// Detects Fahrenheit from a cool-down: without heat, a motor approaches the air temperature, but in Fahrenheit a value far above it.
   void cooling_in_fahrenheit() {
     const double room_C = ambient_ != nullptr ? middle_of(ambient_->values) : stated_C_.value_or(base::kUnknown);
-    if (std::isnan(room_C) || sensors_.empty() || is_told_) {
+    if (std::isnan(room_C) || sensors_.empty() || is_reported_) {
       return;
     }
     constexpr double kFlat_share = 0.4;
@@ -208,7 +208,7 @@ class Scales {
   const Recording& recording_;
   const Channel* ambient_;
   std::optional<double> stated_C_;
-  bool is_told_ = false;                  ///< true: Fahrenheit has already been reported for a sensor of the motor
+  bool is_reported_ = false;              ///< true: Fahrenheit has already been reported for a sensor of the motor
   std::vector<const Channel*> sensors_;   ///< temperatures of the motor
   std::vector<const Channel*> channels_;  ///< these and the surroundings
   std::vector<Suspicion> found_;

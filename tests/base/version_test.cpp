@@ -1,4 +1,4 @@
-// The version tells programs with other algorithms apart, and is the same for the same sources.
+// The version differs between programs with other algorithms, and is the same for the same sources.
 #include "base/version.h"
 
 #include <fmt/format.h>

@@ -112,7 +112,7 @@ TEST(ClockOffsets, WindingAloneIsNotJudged) {
   EXPECT_FALSE(recording::early_answer(offset, 1.0)) << "little better than no delay: another heat makes that";
   offset.misfit_ratio = 50.0;
   offset.delay_s = -0.25;
-  EXPECT_FALSE(recording::early_answer(offset, 1.0)) << "less than a sample tells";
+  EXPECT_FALSE(recording::early_answer(offset, 1.0)) << "less than one sample";
 }
 
 /// The motor turns for minutes without load. The iron heats the winding, which is never the hottest node and does not follow the current.

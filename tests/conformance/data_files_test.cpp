@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"\"181 g cm2\", origin = \"estimated\", source = [\"own\", \"maxon_2019\"], range = "
                               "[\"120 g cm2\", \"250 g cm2\"]",
                               "\"13 g cm2\", origin = \"third_party\", source = \"own\", tolerance = \"10 %\""}),
-    [](const auto& instance) { return "figure_" + std::to_string(instance.index); });
+    [](const auto& instance) { return "value_" + std::to_string(instance.index); });
 
 /// The output of `describe` must be valid when it is pasted into a motor file.
 class EffectLines : public testing::TestWithParam<std::string> {};

@@ -371,7 +371,7 @@ TEST(MeasuredRun, brings_columns_of_the_log_into_the_operating_points) {
   }
   EXPECT_GT(thinned(run, 1000).at.at(0).first_column, 5.0);
   const thermal::OperatingPoint<double> before = run.at.front();
-  set_columns(run, std::vector<std::string>{"current_A", "nobody_logs_this", "thrust_N"});
+  set_columns(run, std::vector<std::string>{"current_A", "not_logged_V", "thrust_N"});
   const thermal::OperatingPoint<double>& first = run.at.front();
   EXPECT_EQ(first.first_column, -2.0);
   EXPECT_FALSE(first.knows(thermal::column_bit(1)));

@@ -272,7 +272,7 @@ TEST_P(SmoothedFlux, has_the_standard_deviation_that_is_left) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Whitening, SmoothedFlux, testing::Values(std::vector<double>{}, std::vector<double>{0.4, 0.2}),
-                         [](const auto& instance) { return instance.param.empty() ? "steady_sensors" : "wandering_sensors"; });
+                         [](const auto& instance) { return instance.param.empty() ? "steady_sensors" : "drifting_sensors"; });
 
 TEST(Whitening, a_common_factor_of_heat_capacities_conductances_and_sources_changes_no_temperature) {
   const MeasuredRun run = random_run(7, 200);

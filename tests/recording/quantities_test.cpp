@@ -36,7 +36,7 @@ TEST(Quantities, TableIsSoundAndItsNamesEndInTheirUnits) {
     EXPECT_FALSE(type.meaning.empty()) << type.key;
     const std::string free_name = "another_" + std::string(type.key);
     ASSERT_TRUE(quantity_named(free_name)) << free_name;
-    EXPECT_EQ(quantity_named(free_name)->unit, type.unit) << "the name itself would tell another unit";
+    EXPECT_EQ(quantity_named(free_name)->unit, type.unit) << "the name itself would state another unit";
     EXPECT_EQ(quantity_named(std::string(type.key) + (type.is_numbered ? "_2" : ""))->kind, type.kind) << type.key;
   }
 }

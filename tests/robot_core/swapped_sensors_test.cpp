@@ -211,8 +211,8 @@ TEST(SwappedSensors, AreNotReportedOfAPushedRobotThatShouldStand) {
   EXPECT_EQ(alarms.reported, 0);
 }
 
-// Pushes of up to 15 N, three quarters of the grip, for half of the time. Without current sensors only the reaction of the wheels tells a
-// push from a swap. The drives 30000 to 30599 gave the bounds: 2.8 % and 24.8 % of 1200 robots.
+// Pushes of up to 15 N, three quarters of the grip, for half of the time. Without current sensors only the reaction of the wheels
+// distinguishes a push from a swap. The drives 30000 to 30599 gave the bounds: 2.8 % and 24.8 % of 1200 robots.
 TEST(SwappedSensors, AreSeldomReportedOfARobotThatIsPushedOnItsFirstDrive) {
   for (const bool are_currents_fitted : {true, false}) {
     Alarms alarms;

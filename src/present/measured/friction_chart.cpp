@@ -101,7 +101,7 @@ class Drives {
     }
   }
 
-  /// Returns figure 4: the lines of the heading with the most legs. Among equals, the heading on which the slowest wheel turns fastest.
+  /// Returns the lines of the heading with the most legs. Among equals, the heading on which the slowest wheel turns fastest.
   [[nodiscard]] std::optional<report::ChartPanel> of_one_heading() const {
     const int number = informative_heading();
     if (number < 0) {
