@@ -99,11 +99,11 @@ std::string duty_file(const DutyAnswer& answer, const std::filesystem::path& csv
   const std::string origin =
       game ? "measured motion of a recorded game, wheel torques computed from the robot's file" : answer.duty->origin;
   const bool is_torque = game || answer.duty->kind == DutyKind::torque;
-  return fmt::format(
+  return input::with_short_lines(fmt::format(
       "summary = {}\norigin = {}\nshape = \"recorded\"\n"
       "ambient = {{ value = \"25 degC\", origin = \"estimated\", derivation = \"not recorded\", range = [\"20 degC\", \"32 degC\"] }}\n\n"
       "[recorded]\nfile = {}\nquantity = \"{}\"\n",
-      input::toml_text(summary), input::toml_text(origin), input::toml_text(csv.filename().string()), is_torque ? "torque" : "current");
+      input::toml_text(summary), input::toml_text(origin), input::toml_text(csv.filename().string()), is_torque ? "torque" : "current"));
 }
 
 }  // namespace heatsoak::duty

@@ -8,6 +8,8 @@
 #include <regex>
 #include <sstream>
 
+#include "input/toml_text.h"
+
 namespace heatsoak::friction {
 namespace {
 
@@ -30,12 +32,10 @@ std::string joined(const Lines& lines) {
   return text;
 }
 
-/// Quotes a text as a TOML string.
-std::string quoted(const std::string& text) { return fmt::format("{:?}", text); }
-
-/// Formats a value and its range as TOML, with two digits more than the first uncertain one. `least` is a lower bound.
-std::string parameter(const Estimate& estimate, double scale, const std::string& unit, double least, const std::string& source,
-                      const std::string& derivation) {
+/// Formats an entry with value and range as TOML, with two digits more than the first uncertain one. `least` is a lower bound. A long entry
+/// has several lines.
+std::string parameter(const std::string& key, const Estimate& estimate, double scale, const std::string& unit, double least,
+                      const std::string& source, const std::string& derivation) {
   const auto kept = [&](double value) { return std::max(value, least) * scale; };
   const double width = estimate.interval ? kept(estimate.interval->high) - kept(estimate.interval->low) : 0.0;
   const double smallest = width > 0.0 ? width : std::max(std::abs(kept(estimate.value)), 1e-3) * 0.01;
@@ -48,8 +48,8 @@ std::string parameter(const Estimate& estimate, double scale, const std::string&
   if (width > 0.0) {
     range = fmt::format(", range = [{}, {}]", text(kept(estimate.interval->low)), text(kept(estimate.interval->high)));
   }
-  return fmt::format("{{ value = {}, origin = \"measured\", source = {}{}, derivation = {} }}", text(kept(estimate.value)), quoted(source),
-                     range, quoted(derivation));
+  return input::with_short_lines(fmt::format("{} = {{ value = {}, origin = \"measured\", source = {}{}, derivation = {} }}", key,
+                                             text(kept(estimate.value)), input::toml_text(source), range, input::toml_text(derivation)));
 }
 
 bool is_header(const std::string& line) { return std::regex_search(line, std::regex(R"(^\s*\[)")); }
@@ -112,11 +112,13 @@ Lines::iterator end_of_entry(Lines& lines, Lines::iterator first) {
   return last == lines.end() ? first : last + 1;
 }
 
-void set_damping(Lines& lines, const robot::Robot& robot, const std::string& value) {
-  const std::string line = "wheel_damping = " + value;
+constexpr const char* kDamping = "wheel_damping";
+
+/// Writes the entry of the damping over the old one.
+void set_damping(Lines& lines, const robot::Robot& robot, const std::string& entry) {
   const auto place = robot.parameters.find("friction.wheel_damping");
   if (place == robot.parameters.end()) {
-    lines.insert(end_of_friction(lines, robot), line);
+    lines.insert(end_of_friction(lines, robot), entry);
     return;
   }
   const auto first = lines.begin() + (place->second.at.line - 1);
@@ -124,7 +126,7 @@ void set_damping(Lines& lines, const robot::Robot& robot, const std::string& val
   if (end == first || !std::regex_search(*first, std::regex(R"(^\s*wheel_damping\s*=)"))) {
     throw other_form(robot, "friction");
   }
-  *first = line;
+  *first = entry;
   lines.erase(first + 1, end);
 }
 
@@ -167,11 +169,11 @@ Lines wheel_table(const WheelFriction& wheel, const robot::DriveConstants& drive
   const auto degrees = [&](double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; };
   const double none = -std::numeric_limits<double>::infinity();
   return {"", "[[friction.heading.wheel]]",
-          "constant = " + parameter(constant, 1e3, "mN m", 0.0, source,
-                                    "b = " + volts(*wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
-          "sine = " + parameter(sine, 1e3, "mN m", none, source, "a = " + volts(*wheel.sine_V) + "; " + conversion),
-          "phase = " + parameter(converted(*wheel.phase_rad, degrees), 1.0, "deg", none, source,
-                                 wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
+          parameter("constant", constant, 1e3, "mN m", 0.0, source,
+                    "b = " + volts(*wheel.constant_V) + "; " + conversion + ", less the motor's drag"),
+          parameter("sine", sine, 1e3, "mN m", none, source, "a = " + volts(*wheel.sine_V) + "; " + conversion),
+          parameter("phase", converted(*wheel.phase_rad, degrees), 1.0, "deg", none, source,
+                    wheel.phase_is_given ? "the wheel's rolling direction: too few headings to determine it" : "fitted")};
 }
 
 void note_what_is_cut(const FrictionFit& fit, const robot::DriveConstants& drive, std::vector<WrittenAsZero>& notes) {
@@ -242,7 +244,7 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
           converted(*wheel.damping_V_s_per_rad, [&](double value) { return robot::damping_of_voltage_Nm_s_per_rad(drive, value); }));
     }
     set_damping(lines, robot,
-                parameter(over_wheels(dampings).value(), 1e3, "mN m s/rad", 0.0, source,
+                parameter(kDamping, over_wheels(dampings).value(), 1e3, "mN m s/rad", 0.0, source,
                           "mean of the wheels, the interval covers those of all; " + conversion + ", without the back-EMF"));
   }
   remove_heading(lines);
@@ -254,8 +256,7 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
     rotations.push_back(wheel.rotation_V ? std::optional(converted(*wheel.rotation_V, torque_Nm)) : std::nullopt);
   }
   if (const std::optional<Estimate> all = over_wheels(rotations)) {
-    table.push_back("rotation = " +
-                    parameter(*all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
+    table.push_back(parameter("rotation", *all, 1e3, "mN m", 0.0, source, "mean of the wheels; " + conversion + ", less the motor's drag"));
   } else {
     table.insert(table.end(), rotation_lines.begin(), rotation_lines.end());
   }
@@ -278,7 +279,8 @@ std::string with_measured_damping(const std::string& text, const robot::Robot& r
     throw DampingNegative(all->value);
   }
   Lines lines = lines_of(text);
-  set_damping(lines, robot, parameter(*all, 1e3, "mN m s/rad", 0.0, source, "mean of the wheels over roll-outs with open motors"));
+  set_damping(lines, robot,
+              parameter(kDamping, *all, 1e3, "mN m s/rad", 0.0, source, "mean of the wheels over roll-outs with open motors"));
   return checked(lines, robot);
 }
 

@@ -117,7 +117,7 @@ std::string to_toml(const Motor& motor) {
     text += fmt::format("{}{} = {}\n", head_of_effect(sensor.name, sensor.type->name), sensor.type->size.key,
                         parameter_text(sensor.size, std::string(sensor.type->size.unit)));
   }
-  return motor.fit ? text + to_toml(*motor.fit) : text;
+  return input::with_short_lines(motor.fit ? text + to_toml(*motor.fit) : text);
 }
 
 }  // namespace heatsoak::motor

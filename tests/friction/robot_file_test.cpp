@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "base/files.h"
+#include "input/toml_text.h"
 #include "robot/body.h"
+#include "support/longest_line.h"
 #include "support/source_folder.h"
 #include "support/wheel_friction.h"
 
@@ -82,6 +84,23 @@ TEST(RobotFile, keeps_everything_else_as_it_stands) {
   EXPECT_LT(constant.spread->low, constant.value);
   // A second write must replace the entry instead of adding it again.
   EXPECT_EQ(with_measured_friction(text, after, robot::drive_constants(after, motor()), any_fit(after), "drive.csv", notes), text);
+}
+
+// The source names all logs, so it can be long.
+TEST(RobotFile, has_no_long_lines) {
+  const robot::Robot before = robot::read_robot(kFile);
+  std::vector<WrittenAsZero> notes;
+  const std::string source = "friction test on the carpet of the hall, with a full battery, of 216 logs \\ \"exp00.csv\" to \"exp215.csv\"";
+  std::string text = file_text();
+  for (int write = 0; write < 2; ++write) {
+    const robot::Robot robot = robot::parse_robot(text, kFile);
+    text = with_measured_friction(text, robot, robot::drive_constants(robot, motor()), any_fit(robot), source, notes);
+    EXPECT_THAT(text, HasSubstr("wheel_damping = { value"));
+    EXPECT_LE(longest_line(text), input::kLongestTomlLine);
+  }
+  const robot::Robot after = robot::parse_robot(text, kFile);
+  EXPECT_EQ(after.parameters.at("friction.wheel_damping").source, source);
+  EXPECT_THAT(after.parameters.at("friction.heading.wheel[1].constant").derivation, HasSubstr("mN m/A, less the motor's drag"));
 }
 
 TEST(RobotFile, of_a_robot_without_friction_gets_its_tables) {

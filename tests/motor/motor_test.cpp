@@ -11,8 +11,12 @@
 #include <iterator>
 #include <numbers>
 
+#include "input/data_folders.h"
+#include "input/toml_text.h"
 #include "motor/datasheet_network.h"
 #include "motor/write_motor.h"
+#include "support/longest_line.h"
+#include "support/source_folder.h"
 
 namespace heatsoak::motor {
 namespace {
@@ -233,6 +237,20 @@ TEST(MotorSensors, are_written_as_they_were_read) {
     EXPECT_NEAR(again.sensors[i].size.spread->high, motor.sensors[i].size.spread->high, 1e-9);
   }
   EXPECT_EQ(to_toml(again), to_toml(motor));
+}
+
+TEST(WrittenMotor, has_no_long_lines_and_the_same_values) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("written_" + std::to_string(getpid()) + ".toml");
+  for (const std::string& id : input::ids_in(kSource / "motor_db")) {
+    const Motor motor = read_motor(kSource / "motor_db" / (id + ".toml"));
+    const std::string text = to_toml(motor);
+    EXPECT_LE(longest_line(text), input::kLongestTomlLine) << id;
+    std::ofstream(path) << text;
+    const Motor again = read_motor(path);
+    EXPECT_EQ(to_toml(again), text) << id;
+    EXPECT_EQ(again.notes, motor.notes) << id;
+  }
+  std::filesystem::remove(path);
 }
 
 TEST(MotorSensors, sources_that_they_name_must_be_there) {
