@@ -104,7 +104,8 @@ void Rounds::begin() {
   unit_W_ = estimation::material_heat_W(paths, estimation::thresholds().material_K);
   now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
   const estimation::Thresholds& limits = estimation::thresholds();
-  out_.material_W = std::max({unit_W_, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W});
+  out_.material_W =
+      std::max({unit_W_, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
   grid_ = estimation::flux_grid(unit_W_, estimation::travel_K(input_.runs), input_.model.flux_nodes.size());
   out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
   list_ = candidates_for(input_.model, input_.runs);

@@ -165,8 +165,8 @@ class Selector : Rounds {
 
   /// True if whole runs decided the file's parameters, and the model predicts these runs about as well as those.
   [[nodiscard]] bool are_runs_as_usual() const {
-    return input_.usual.flux_W > 0.0 && input_.usual.error_K > 0.0 &&
-           free_run_error_K(input_.model) < estimation::thresholds().clearly_other_ratio * input_.usual.error_K;
+    return input_.usual.flux_W > 0.0 && input_.usual.error_K &&
+           free_run_error_K(input_.model) < estimation::thresholds().clearly_other_ratio * *input_.usual.error_K;
   }
 
   void keep_as_it_is(const Judged& judged) {

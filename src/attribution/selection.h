@@ -17,8 +17,8 @@ namespace heatsoak::attribution {
 
 /// Unexplained part of the runs that the model's file was fitted to.
 struct UsualErrors {
-  double error_K = 0.0;  ///< RMS error of whole runs if these decided the parameters (free_run_error_K of MotorFit); else 0
-  double flux_W = 0.0;   ///< RMS of the unknown heat; 0: not known
+  std::optional<double> error_K = {};  ///< RMS error of whole runs if these decided the parameters (free_run_error_K of MotorFit)
+  std::optional<double> flux_W = {};   ///< RMS of the unknown heat; empty: not known
 };
 
 /// Names of the phases of select_effects(), for its progress.

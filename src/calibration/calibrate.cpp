@@ -214,7 +214,7 @@ class Calibrating {
     if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
       all_.findings.push_back(WindingNotMeasured{});
     }
-    if (fit.free_run_error_K > 0.0) {
+    if (fit.free_run_error_K) {
       all_.findings.push_back(ResponseNeedsOtherValues{});
     }
     if (!fit.has_converged) {
@@ -338,7 +338,7 @@ class Calibrating {
       double below = estimation::kInterval_sd * sd;
       double above = estimation::kInterval_sd * sd;
       Eigen::Index only = 0;
-      if (fit.free_run_error_K == 0.0 && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
+      if (!fit.free_run_error_K && sd > kCurvatureHolds_sd && each.exponents.cwiseAbs().maxCoeff(&only) == 1.0 &&
           each.exponents.cwiseAbs().sum() == 1.0) {
         const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only));
         // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.

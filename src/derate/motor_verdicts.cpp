@@ -46,11 +46,11 @@ int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern>
   return static_cast<int>(std::ranges::count_if(over_up_to_ratio_, [&](double factor) { return safety_factor <= factor; }));
 }
 
-double MotorVerdicts::expected_ratio(int most_over) const {
+std::optional<double> MotorVerdicts::expected_ratio(int most_over) const {
   std::vector<double> descending = limit_use_ratio_;
   std::ranges::sort(descending, std::greater<>());
   const double use_ratio = most_over < 0 ? 0.0 : descending[std::min(static_cast<std::size_t>(most_over), descending.size() - 1)];
-  return use_ratio > 0.0 && std::isfinite(use_ratio) ? last_ratio_ * use_ratio : std::numeric_limits<double>::quiet_NaN();
+  return use_ratio > 0.0 && std::isfinite(use_ratio) ? std::optional(last_ratio_ * use_ratio) : std::nullopt;
 }
 
 MotorVerdicts::Known& MotorVerdicts::known(const LoadPattern& pattern) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,9 +29,9 @@ class MotorVerdicts {
   /// Returns how many motors exceed a limit in at least one use. Calls `play` only for uses that are needed, from one thread.
   int count_over(double safety_factor, std::span<const LoadPattern> patterns, const Play& play);
 
-  /// Returns an estimate of the smallest safety factor at which at most `most_over` motors exceed a limit; NaN if unknown. A motor's rise
-  /// is about inversely proportional to the factor, so the estimate is close if that of the last count was.
-  [[nodiscard]] double expected_ratio(int most_over) const;
+  /// Returns an estimate of the smallest safety factor at which at most `most_over` motors exceed a limit; nothing if unknown. A motor's
+  /// rise is about inversely proportional to the factor, so the estimate is close if that of the last count was.
+  [[nodiscard]] std::optional<double> expected_ratio(int most_over) const;
 
  private:
   /// Results of one load pattern.

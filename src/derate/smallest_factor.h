@@ -11,7 +11,7 @@ namespace heatsoak::derate {
 /// Answer of a check for one factor.
 struct TriedFactor {
   bool is_enough = false;
-  double expected_ratio = std::numeric_limits<double>::quiet_NaN();  ///< estimate of the smallest factor that is enough; NaN if unknown
+  std::optional<double> expected_ratio = {};  ///< estimate of the smallest factor that is enough
 };
 
 /// Grid of factors: steps of `growth_ratio` from `from_ratio` to `most_ratio`, each halved until it is 1 % wide.
@@ -66,10 +66,10 @@ std::optional<double> smallest_factor(const FactorGrid& grid, const CheckFactor&
     const double above_ratio = std::nextafter(open.low_ratio, std::numeric_limits<double>::infinity());
     const bool is_bounded = std::isfinite(open.high_ratio);
     const double largest_ratio = is_bounded ? open.high_ratio : grid.step_of(above_ratio).high_ratio;
-    const bool is_far = !is_bounded && found.expected_ratio >= largest_ratio;
-    if (!is_far && used < kMostExpected && !std::isnan(found.expected_ratio)) {
+    const bool is_far = !is_bounded && found.expected_ratio.value_or(0.0) >= largest_ratio;
+    if (!is_far && used < kMostExpected && found.expected_ratio) {
       ++used;
-      guess_ratio = std::clamp(found.expected_ratio, above_ratio, largest_ratio);
+      guess_ratio = std::clamp(*found.expected_ratio, above_ratio, largest_ratio);
     } else {
       guess_ratio = is_bounded ? 0.5 * (open.low_ratio + open.high_ratio) : largest_ratio;
     }

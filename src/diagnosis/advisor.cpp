@@ -217,13 +217,13 @@ std::vector<Experiment> next_experiments(const attribution::Selection& selection
       const std::vector<attribution::Candidate> pair{*term.candidate, other->candidate};
       for (const Plan& plan : menu_here) {
         const double nats = separation_nats(selection.before, selection.after.flux, pair, own ? own->size_share : 1.0, plan);
-        if (nats > best.expected_nats) {
+        if (nats > best.expected_nats.value_or(0.0)) {
           best.expected_nats = nats;
           describe(*plan.primitive, plan.run, best);
         }
       }
       // If ten minutes do not separate the effects, use the catalogue's experiment, which needs another set-up.
-      if (best.expected_nats < 1.0) {
+      if (!best.expected_nats || *best.expected_nats < 1.0) {
         best = of_catalogue;
       }
       experiments.push_back(std::move(best));

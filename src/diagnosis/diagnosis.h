@@ -39,7 +39,7 @@ struct Unexplained {
   std::string other_node;  ///< second node of Multiplier::difference; else empty
   double mean_W = 0.0;
   double peak_W = 0.0;
-  double rms_W = 0.0;  ///< for a curve: mean magnitude
+  double rms_W = 0.0;            ///< for a curve: mean magnitude
   double time_scale_s = 0.0;     ///< correlation time
   double gain_nats = 0.0;        ///< evidence gained
   std::vector<double> knots;     ///< values of the signal, ascending, in `signal_unit`
@@ -71,7 +71,7 @@ struct Experiment {
   /// Largest current and speed at which the motor gets no hotter than in the runs; empty: not part of the experiment.
   std::optional<double> most_A = {};
   std::optional<double> most_rad_per_s = {};
-  double expected_nats = 0.0;  ///< expected gain in evidence between them; 0: not computed
+  std::optional<double> expected_nats = {};  ///< expected gain in evidence between them; empty for an experiment of the catalogue
 };
 
 /// A parameter of the file that the runs contradict.

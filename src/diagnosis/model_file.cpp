@@ -235,8 +235,11 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   }
   out.model = std::move(built.model);
   out.model.columns = out.how.columns;
-  out.usual.error_K = everywhere.fit ? everywhere.fit->free_run_error_K : 0.0;
-  out.usual.flux_W = everywhere.fit && !everywhere.fit->latent_flux_W.empty() ? std::ranges::max(everywhere.fit->latent_flux_W) : 0.0;
+  if (everywhere.fit) {
+    out.usual.error_K = everywhere.fit->free_run_error_K;
+    const std::vector<double>& flux_W = everywhere.fit->latent_flux_W;
+    out.usual.flux_W = flux_W.empty() ? std::nullopt : std::optional(std::ranges::max(flux_W));
+  }
   out.parameters = std::move(built.parameters);
   std::ranges::move(built.held, std::back_inserter(out.findings));
   std::ranges::move(calibration::held_sensors(motor, recordings), std::back_inserter(out.findings));

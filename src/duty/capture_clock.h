@@ -18,8 +18,8 @@ class CaptureClock {
   };
   /// Returns the time of a frame; nothing if its time of capture is not credible.
   std::optional<Reading> read(int camera, double capture_s, std::int64_t received_ns);
-  /// Returns the Unix time of the first frame; 0 before it.
-  [[nodiscard]] double start_unix_s() const { return start_s_.value_or(0.0); }
+  /// Returns the Unix time of the first frame; nothing before it.
+  [[nodiscard]] std::optional<double> start_unix_s() const { return start_s_; }
 
   static constexpr double kTolerance_s = 0.5;
   static constexpr int kConfirmed = 10;  ///< number of consecutive frames that confirm a jump

@@ -119,7 +119,7 @@ struct RobotSummary {
 struct ImportReport {
   std::string format;  ///< name of the log type
   PositionSource source;
-  double start_unix_s = 0.0;  ///< Unix time of the first frame; 0 if unknown
+  std::optional<double> start_unix_s = {};  ///< Unix time of the first frame
   double span_s = 0.0;
   std::uint64_t bytes = 0;     ///< size of the uncompressed log
   std::uint64_t messages = 0;  ///< messages, or rows of a CSV file

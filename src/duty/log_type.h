@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,8 +20,8 @@ struct Detection {
   double y_m = 0.0;
   double yaw_rad = 0.0;
   int camera = 0;
-  double confidence = 1.0;         ///< confidence of the detection, 0 to 1
-  double camera_distance_m = 0.0;  ///< horizontal distance to the camera; 0 if unknown
+  double confidence = 1.0;                       ///< confidence of the detection, 0 to 1
+  std::optional<double> camera_distance_m = {};  ///< horizontal distance to the camera
 };
 
 /// Receiver of an importer's results, in the order of the file.

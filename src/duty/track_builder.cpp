@@ -42,7 +42,7 @@ bool within_reach(const TrackPoint& from, const TrackPoint& to, double expected_
 }
 
 double weight(const Detection& sight) {
-  const double slope = sight.camera_distance_m / kCameraHeight_m;
+  const double slope = sight.camera_distance_m.value_or(0.0) / kCameraHeight_m;
   return std::max(sight.confidence, kLeastConfidence) / (1.0 + slope * slope);
 }
 
@@ -50,7 +50,7 @@ double weight(const Detection& sight) {
 
 bool TrackBuilder::is_plausible(const Detection& d) {
   return std::isfinite(d.time_s) && std::isfinite(d.x_m) && std::isfinite(d.y_m) && std::isfinite(d.yaw_rad) &&
-         std::isfinite(d.confidence) && std::isfinite(d.camera_distance_m) && std::abs(d.x_m) <= kFarthest_m &&
+         std::isfinite(d.confidence) && std::isfinite(d.camera_distance_m.value_or(0.0)) && std::abs(d.x_m) <= kFarthest_m &&
          std::abs(d.y_m) <= kFarthest_m && std::abs(d.yaw_rad) < 1e4 && d.robot.id >= 0 && d.robot.id <= kLargestRobotId;
 }
 

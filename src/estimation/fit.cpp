@@ -403,7 +403,7 @@ class Fitting {
 
   void conclude() {
     std::vector<WeightedSupposition> around{{best_, 1.0}};
-    if (options_.with_flux && fit_.free_run_error_K == 0.0) {
+    if (options_.with_flux && !fit_.free_run_error_K) {
       around = suppositions_around([&](const auto& suppositions) { return evidences(suppositions); }, range_, best_);
     }
     std::vector<Supposition> suppositions;
@@ -421,7 +421,7 @@ class Fitting {
       fit_.covariance += around[h].weight * (all[h].covariance + off * off.transpose());
       fit_.hypotheses.push_back({suppositions[h], around[h].weight, theta_ + all[h].coefficients, all[h].covariance});
     }
-    if (fit_.free_run_error_K > 0.0) {
+    if (fit_.free_run_error_K) {
       fit_.covariance = prior_.precision.inverse();
       fit_.hypotheses.front().theta = theta_;
       fit_.hypotheses.front().covariance = fit_.covariance;
@@ -432,7 +432,7 @@ class Fitting {
     fit_.drift_K = best_.drift_K;
     fit_.drift_time_scale_s = best_.drift_time_scale_s;
     fit_.starts = starts_;
-    if (fit_.free_run_error_K == 0.0) {
+    if (!fit_.free_run_error_K) {
       fit_.log_evidence = fits({best_}).front().log_evidence;
     }
     std::vector<RunEvidence> data;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,7 +48,8 @@ struct Fit {
   double log_evidence = 0.0;             ///< in nats, at the most probable flux and the parameters that are most probable with it
   int iterations = 0;
   bool has_converged = false;
-  double free_run_error_K = 0.0;  ///< RMS error if θ was taken from the free-run fit, which predicts whole runs far better; else 0
+  std::optional<double> free_run_error_K =
+      {};  ///< RMS error, if θ was taken from the free-run fit because that predicts whole runs far better
   /// Factor R of the whitened [∂/∂θ, residual] of all runs at θ, without the prior: the information in the data alone.
   Eigen::MatrixXd data_triangle;
 };

@@ -130,30 +130,31 @@ RobustLocation robust_location(std::span<const double> values, double step) {
   RobustLocation found;
   found.kept.assign(values.size(), false);
   std::vector<double> work(values.begin(), values.end());
-  found.value = median(work);
-  if (!std::isfinite(found.value)) {
+  double location = median(work);
+  if (!std::isfinite(location)) {
     return found;
   }
-  std::ranges::transform(values, work.begin(), [&](double value) { return std::abs(value - found.value); });
-  const double deviation = std::max(kNormal * median(work), std::max(0.5 * step, 1e-12 * std::abs(found.value)));
+  std::ranges::transform(values, work.begin(), [&](double value) { return std::abs(value - location); });
+  const double deviation = std::max(kNormal * median(work), std::max(0.5 * step, 1e-12 * std::abs(location)));
   for (int round = 0; round < kMostRounds; ++round) {
     double sum = 0.0;
     double weight = 0.0;
     for (const double value : values) {
       if (std::isfinite(value) && deviation > 0.0) {
-        const double share = bisquare_weight((value - found.value) / deviation);
-        sum += share * (value - found.value);
+        const double share = bisquare_weight((value - location) / deviation);
+        sum += share * (value - location);
         weight += share;
       }
     }
     if (weight <= 0.0 || std::abs(sum) <= 1e-9 * deviation * weight) {
       break;
     }
-    found.value += sum / weight;
+    location += sum / weight;
   }
+  found.value = location;
   found.noise = deviation;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    found.kept[i] = std::isfinite(values[i]) && std::abs(values[i] - found.value) <= kBisquare * deviation;
+    found.kept[i] = std::isfinite(values[i]) && std::abs(values[i] - location) <= kBisquare * deviation;
   }
   return found;
 }

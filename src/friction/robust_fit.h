@@ -26,9 +26,9 @@ double median(std::span<double> values);
 
 /// Location by Tukey's bisquare M-estimate (c = 4.685), started at the median, with the scale from the median absolute deviation.
 struct RobustLocation {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double noise = 0.0;      ///< robust standard deviation
-  std::vector<bool> kept;  ///< per value: finite and not an outlier
+  std::optional<double> value = {};  ///< empty if no value is finite
+  double noise = 0.0;                ///< robust standard deviation
+  std::vector<bool> kept;            ///< per value: finite and not an outlier
 };
 /// Estimates the location of the finite values. `step` is the resolution of the sensor: deviations up to half of it are no outliers.
 RobustLocation robust_location(std::span<const double> values, double step);

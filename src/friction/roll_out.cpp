@@ -281,10 +281,10 @@ std::optional<Estimate> over_runs(const std::vector<double>& values) {
     return std::nullopt;
   }
   if (values.size() >= 3) {
-    const RobustLocation typical = robust_location(values, 0.0);
-    const double deviation = std::sqrt((all.array() - typical.value).square().sum() / (count - 1.0));
+    const double typical = robust_location(values, 0.0).value.value();
+    const double deviation = std::sqrt((all.array() - typical).square().sum() / (count - 1.0));
     const double half = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) * deviation / std::sqrt(count);
-    return estimate_around(typical.value, half);
+    return estimate_around(typical, half);
   }
   return Estimate{.value = all.mean()};
 }

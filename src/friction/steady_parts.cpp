@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/unknown.h"
 #include "friction/block_medians.h"
 #include "friction/robust_fit.h"
 
@@ -203,10 +204,10 @@ double heading_rad(const FrictionLog& log, const SteadyPart& part, const robot::
       x.push_back(std::cos(angle_rad));
       y.push_back(std::sin(angle_rad));
     }
-    const double along = robust_location(x, 1e-3).value;
-    const double across = robust_location(y, 1e-3).value;
-    if (std::isfinite(along) && std::isfinite(across)) {
-      return std::atan2(across, along);
+    const std::optional<double> along = robust_location(x, 1e-3).value;
+    const std::optional<double> across = robust_location(y, 1e-3).value;
+    if (along && across) {
+      return std::atan2(*across, *along);
     }
   }
   return std::atan2(velocity.y_m_per_s, velocity.x_m_per_s);
@@ -216,13 +217,13 @@ SteadyPart measured_part(const FrictionLog& log, const robot::Kinematics& kinema
   for (int i = 0; i < kinematics.wheel_count; ++i) {
     const auto wheel = static_cast<std::size_t>(i);
     const RobustLocation speed = robust_location(rows_of(log.wheel_speed_rad_per_s[wheel], part), blocks.resolution(i));
-    part.wheel_speed_rad_per_s[i] = speed.value;
+    part.wheel_speed_rad_per_s[i] = speed.value.value_or(base::kUnknown);
     part.speed_noise_rad_per_s[i] = speed.noise;
     const bool has_voltage = !log.voltage_V[wheel].empty();
     RobustLocation voltage;
     if (has_voltage) {
       voltage = robust_location(rows_of(log.voltage_V[wheel], part), blocks.resolution(kinematics.wheel_count + i));
-      part.voltage_V[i] = voltage.value;
+      part.voltage_V[i] = voltage.value.value_or(base::kUnknown);
     }
     for (std::size_t row = 0; row < part.row_count; ++row) {
       part.rows_kept[wheel] += speed.kept[row] && (!has_voltage || voltage.kept[row]) ? 1 : 0;

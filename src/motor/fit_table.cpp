@@ -187,10 +187,8 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
       {"unmodelled_heat", "", base::Range::between(0.0, kMostShare), "rms of the heat that the model lacks, per mean heat of the runs"},
       input::Need::optional);
   fit.free_run_error_K =
-      table
-          .quantity({"free_run_error", "K", base::Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
-                    input::Need::optional)
-          .value_or(0.0);
+      table.quantity({"free_run_error", "K", base::Range::between(1e-3, 20.0), "rms error of the free runs that determined the values"},
+                     input::Need::optional);
   fit.extensions = table.texts("extensions", input::Need::optional);
   fit.heat_input = read_heat_input(table);
   fit.training = read_training(table);
@@ -228,7 +226,7 @@ std::string to_toml(const MotorFit& fit) {
   text += fit.extensions.empty()
               ? ""
               : fmt::format("# added for better forecasts, no diagnosis\nextensions = [\"{}\"]\n", fmt::join(fit.extensions, "\", \""));
-  text += fit.free_run_error_K > 0.0 ? fmt::format("free_run_error = \"{} K\"\n", base::significant(fit.free_run_error_K, 2)) : "";
+  text += fit.free_run_error_K ? fmt::format("free_run_error = \"{} K\"\n", base::significant(*fit.free_run_error_K, 2)) : "";
   text += fit.heat_input
               ? fmt::format("# the thermal values hold for heat from this input of a log\nheat_input = \"{}\"\n", name_of(*fit.heat_input))
               : "";

@@ -75,9 +75,9 @@ struct MotorFit {
   double latent_flux_time_scale_s = 0.0;
   /// Present if the runs contain much heat that the model lacks: its rms per mean heat of the runs, > 0. Predictions are then doubtful.
   std::optional<double> unmodelled_heat_share = {};
-  /// Above 0 if the parameters were fitted to simulations of whole runs: their rms error. Short-term predictions would then ask for other
-  /// parameters, as in a motor with more thermal bodies than the model.
-  double free_run_error_K = 0.0;
+  /// Rms error of whole simulated runs, if the parameters were fitted to these. Short-term predictions would then ask for other parameters,
+  /// as in a motor with more thermal bodies than the model.
+  std::optional<double> free_run_error_K = {};
   /// Names of effects and sensor errors of the file that were added for better forecasts: they are no diagnosis.
   std::vector<std::string> extensions = {};
   /// Heat input of the fitted runs. The thermal parameters hold for it, so it is also that of forecasts. Absent in older files.

@@ -245,10 +245,11 @@ DataQuality assess(const Recording& recording, const RecordingReport& report, st
 NothingAboutHeat::NothingAboutHeat(std::vector<Log> logs)
     : base::Failure(base::ExitCode::cannot_answer, "no information about heat"), logs_(std::move(logs)) {}
 
-RowsGivenTwice::Rows::Rows(const Recording& recording)
-    : file(recording.file),
-      first_line(recording.line.empty() ? 0 : recording.line.front()),
-      last_line(recording.line.empty() ? 0 : recording.line.back()) {}
+RowsGivenTwice::Rows::Rows(const Recording& recording) : file(recording.file) {
+  if (!recording.line.empty()) {
+    lines = {recording.line.front(), recording.line.back()};
+  }
+}
 
 RowsGivenTwice::RowsGivenTwice(std::vector<Pair> pairs)
     : base::Failure(base::ExitCode::bad_input, "rows of a log are given twice"), pairs_(std::move(pairs)) {}

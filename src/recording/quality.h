@@ -128,14 +128,18 @@ class NothingAboutHeat : public base::Failure {
 /// Logs share rows, so that a run would count twice (bad_input).
 class RowsGivenTwice : public base::Failure {
  public:
-  /// Rows of a log, as lines of its file.
+  /// Lines of a file, from 1.
+  struct Lines {
+    int first = 1;
+    int last = 1;
+  };
+  /// Rows of a log.
   struct Rows {
     explicit Rows(const Recording& recording);
-    Rows(std::filesystem::path of_file, int first, int last) : file(std::move(of_file)), first_line(first), last_line(last) {}
+    Rows(std::filesystem::path of_file, Lines of_rows) : file(std::move(of_file)), lines(of_rows) {}
 
     std::filesystem::path file;
-    int first_line = 0;  ///< from 1; 0: unknown
-    int last_line = 0;
+    std::optional<Lines> lines;  ///< empty for a recording that was not read from a file
   };
   struct Pair {
     Rows rows;

@@ -308,7 +308,8 @@ TEST(Examination, ConfoundedEffectsComeWithAnExperimentThatSeparatesThem) {
     EXPECT_EQ(found.experiments.size(), alternatives) << account(found);
     for (const diagnosis::Experiment& experiment : found.experiments) {
       EXPECT_FALSE(experiment.what.empty());
-      claim.expect(experiment.expected_nats > 1.0, fmt::format("{} nats for {}", experiment.expected_nats, experiment.effect));
+      claim.expect(experiment.expected_nats > 1.0,
+                   fmt::format("{} nats for {}", experiment.expected_nats.value_or(0.0), experiment.effect));
     }
     input.train.front().at[100].current_rms_A = kPeak_A;
     for (const diagnosis::Experiment& experiment : diagnosis::next_experiments(found.selection, input.train)) {

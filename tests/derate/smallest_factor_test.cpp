@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <optional>
 #include <random>
 
 namespace heatsoak::derate {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Found {
   std::optional<double> ratio;
@@ -34,7 +32,7 @@ TEST(SmallestFactor, IsSufficientToOnePercent) {
   for (int i = 0; i < 500; ++i) {
     const FactorGrid grid{1.0, 16.0, std::uniform_real_distribution(1.02, 2.0)(engine)};
     const double enough_ratio = std::uniform_real_distribution(0.9, 16.0)(engine);
-    const Found found = search(grid, enough_ratio, [](double) { return kNaN; });
+    const Found found = search(grid, enough_ratio, [](double) { return std::nullopt; });
     ASSERT_TRUE(found.ratio) << enough_ratio;
     EXPECT_GE(*found.ratio, enough_ratio);
     EXPECT_LE(*found.ratio, std::max(1.0, 1.0101 * enough_ratio));
@@ -49,7 +47,7 @@ TEST(SmallestFactor, DoesNotDependOnTheExpectedFactors) {
   for (int i = 0; i < 500; ++i) {
     const FactorGrid grid{std::uniform_real_distribution(1.0, 3.0)(engine), 16.0, 1.5};
     const double enough_ratio = std::uniform_real_distribution(0.9, i % 2 == 0 ? 15.9 : 3.0)(engine);
-    const Found plain = search(grid, enough_ratio, [](double) { return kNaN; });
+    const Found plain = search(grid, enough_ratio, [](double) { return std::nullopt; });
     const Found exact = search(grid, enough_ratio, [&](double) { return enough_ratio; });
     const Found biased = search(grid, enough_ratio, [&](double ratio) { return 0.7 * enough_ratio + 0.3 * ratio; });
     const Found wild = search(grid, enough_ratio, [&](double) { return std::uniform_real_distribution(-1.0, 40.0)(engine); });
@@ -65,12 +63,12 @@ TEST(SmallestFactor, DoesNotDependOnTheExpectedFactors) {
 }
 
 TEST(SmallestFactor, IsNothingIfTheLargestIsNotEnough) {
-  for (const double expected_ratio : {kNaN, 2.0, 30.0}) {
+  for (const std::optional<double> expected_ratio : {std::optional<double>(), std::optional(2.0), std::optional(30.0)}) {
     const Found found = search({1.0, 4.0, 1.5}, 4.01, [&](double) { return expected_ratio; });
     EXPECT_FALSE(found.ratio);
     EXPECT_EQ(found.most_checked_ratio, 4.0);
   }
-  EXPECT_EQ(search({8.0, 4.0, 1.5}, 3.0, [](double) { return kNaN; }).ratio, 4.0) << "a search that begins above its end";
+  EXPECT_EQ(search({8.0, 4.0, 1.5}, 3.0, [](double) { return std::nullopt; }).ratio, 4.0) << "a search that begins above its end";
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(ImportSslLog, ReadsVisionOfBothGenerationsInMetresFromTheStartOfTheRecordin
     expect_line(game);
     EXPECT_EQ(game.tracks[0].segments[0].size(), 225U);
     EXPECT_DOUBLE_EQ(game.tracks[0].segments[0].front().time_s, 0.0);
-    EXPECT_NEAR(game.report.start_unix_s, kEpoch_s, 1e-3);
+    EXPECT_NEAR(game.report.start_unix_s.value(), kEpoch_s, 1e-3);
     EXPECT_NEAR(game.report.span_s, 3.0 - kFrame_s, 1e-6);
     EXPECT_EQ(game.report.frames, 225U);
     EXPECT_EQ(game.report.format, "ssl_log");

@@ -1,9 +1,11 @@
 // Robust location and regression, compared with exact answers and with samples of known truth.
 #include "friction/robust_fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -18,7 +20,7 @@ TEST(RobustLocation, a_fifth_of_nonsense_moves_it_by_less_than_a_tenth_of_the_no
     values.push_back(i % 5 == 0 ? (i % 2 == 0 ? 40.0 : 0.0) : noise(engine));
   }
   const RobustLocation found = robust_location(values, 0.0);
-  EXPECT_NEAR(found.value, 5.0, 0.02);
+  EXPECT_NEAR(found.value.value(), 5.0, 0.02);
   EXPECT_NEAR(static_cast<double>(std::count(found.kept.begin(), found.kept.end(), true)), 3200.0, 5.0);
 }
 
@@ -28,6 +30,13 @@ TEST(RobustLocation, of_steps_of_a_sensor_is_between_them) {
   EXPECT_GT(found.value, 1.0);
   EXPECT_LT(found.value, 1.1);
   EXPECT_FALSE(found.kept[6]);
+}
+
+TEST(RobustLocation, of_no_finite_value_is_empty) {
+  const std::vector<double> values{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()};
+  const RobustLocation found = robust_location(values, 0.1);
+  EXPECT_EQ(found.value, std::nullopt);
+  EXPECT_THAT(found.kept, testing::Each(false));
 }
 
 TEST(RobustFit, is_exact_where_most_rows_are) {

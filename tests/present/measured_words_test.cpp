@@ -321,7 +321,7 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
 
 TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
   const base::Failure twice = in_words(
-      recording::RowsGivenTwice({{{"logs/b.csv", 2, 90}, {"logs/a.csv", 2, 90}}, {{"logs/a.csv", 40, 90}, {"logs/a.csv", 2, 60}}}));
+      recording::RowsGivenTwice({{{"logs/b.csv", {2, 90}}, {"logs/a.csv", {2, 90}}}, {{"logs/a.csv", {40, 90}}, {"logs/a.csv", {2, 60}}}}));
   EXPECT_EQ(twice.code(), base::ExitCode::bad_input);
   ASSERT_EQ(twice.diagnostics().size(), 2U);
   EXPECT_EQ(

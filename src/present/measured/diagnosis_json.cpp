@@ -198,7 +198,7 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   json["next_experiments"] = Json::array();
   for (const diagnosis::Experiment& each : diagnosis.experiments) {
     json["next_experiments"].push_back(
-        {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats, 1)}});
+        {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats.value_or(0.0), 1)}});
   }
   add_notes(json, diagnosis_notes(answer, readings));
   return json;

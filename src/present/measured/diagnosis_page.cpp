@@ -274,7 +274,7 @@ std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<c
     text += "<h2>Next experiment</h2><ul>";
     for (const diagnosis::Experiment& each : diagnosis.experiments) {
       text += fmt::format("<li>To separate {}: {}{}</li>", base::xml_text(rivals_of(each)), base::xml_text(experiment_words(each)),
-                          each.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats)", each.expected_nats) : "");
+                          each.expected_nats ? fmt::format(" (expected to add {:.0f} nats)", *each.expected_nats) : "");
     }
     text += "</ul>\n";
   }

@@ -338,7 +338,7 @@ std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answe
   if (!diagnosis.experiments.empty()) {
     const diagnosis::Experiment& next = diagnosis.experiments.front();
     all.push_back(fmt::format("Next experiment, to decide whether it is {}: {}", rivals_of(next), experiment_words(next)) +
-                  (next.expected_nats > 0.0 ? fmt::format(" (expected to add {:.0f} nats).", next.expected_nats) : std::string(".")));
+                  (next.expected_nats ? fmt::format(" (expected to add {:.0f} nats).", *next.expected_nats) : std::string(".")));
   }
   return all;
 }

@@ -40,13 +40,17 @@ base::Failure worded(const recording::NothingAboutHeat& failure) {
   return {failure.code(), "", std::move(diagnostics)};
 }
 
+std::string words_of(const std::optional<recording::RowsGivenTwice::Lines>& lines) {
+  return lines ? fmt::format("lines {} to {}", lines->first, lines->last) : "its rows";
+}
+
 base::Failure worded(const recording::RowsGivenTwice& failure) {
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [rows, earlier] : failure.pairs()) {
-    diagnostics.push_back({{rows.file.string(), rows.first_line, 1},
+    diagnostics.push_back({{rows.file.string(), rows.lines ? rows.lines->first : 0, 1},
                            {},
-                           fmt::format("lines {} to {} share rows with lines {} to {} of {}; give each row once, to fit or as hold-out",
-                                       rows.first_line, rows.last_line, earlier.first_line, earlier.last_line, earlier.file.string())});
+                           fmt::format("{} share rows with {} of {}; give each row once, to fit or as hold-out", words_of(rows.lines),
+                                       words_of(earlier.lines), earlier.file.string())});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
