@@ -53,8 +53,9 @@ std::vector<RunNote> columns_lacking(std::span<const std::string> columns, std::
   std::vector<RunNote> notes;
   for (const recording::Recording& recording : recordings) {
     ColumnsLacking lacking{recording.name, {}};
-    std::ranges::copy_if(columns, std::back_inserter(lacking.columns),
-                         [&](const std::string& column) { return !column.empty() && !has_values(recording.find(column)); });
+    std::ranges::copy_if(columns, std::back_inserter(lacking.columns), [&](const std::string& column) {
+      return !column.empty() && !has_values(recording.find(recording::canonical_key(column)));
+    });
     if (!lacking.columns.empty()) {
       notes.emplace_back(std::move(lacking));
     }
@@ -63,7 +64,7 @@ std::vector<RunNote> columns_lacking(std::span<const std::string> columns, std::
 }
 
 double long_blanks_s(const recording::Recording& recording, std::string_view column) {
-  const recording::Channel* const channel = recording.find(column);
+  const recording::Channel* const channel = recording.find(recording::canonical_key(column));
   if (!has_values(channel)) {
     return 0.0;
   }
@@ -122,7 +123,7 @@ std::vector<std::string> keep_common_columns(std::vector<MeasuredRun>& runs, std
 
 void set_columns(MeasuredRun& run, std::span<const std::string> keys) {
   for (std::size_t place = 0; place < keys.size(); ++place) {
-    const auto found = run.columns.find(keys[place]);
+    const auto found = run.columns.find(recording::canonical_key(keys[place]));
     const Eigen::VectorXd values = found == run.columns.end() ? Eigen::VectorXd() : without_gaps(found->second);
     const bool is_known = values.size() > 0 && !std::isnan(values[0]);
     const auto set = [&](thermal::OperatingPoint<double>& at, Eigen::Index k) {

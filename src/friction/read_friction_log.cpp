@@ -71,13 +71,13 @@ class ColumnsOfRobot {
       if (const Column* voltage = numbered("wheel_voltage_V", wheel)) {
         log.voltage_V[wheel] = *voltage;
         note(VoltageFrom{VoltageFrom::Source::log});
-      } else if (const Column* modulation = numbered("wheel_pwm_ratio", wheel)) {
+      } else if (const Column* modulation = numbered("wheel_modulation_ratio", wheel)) {
         log.voltage_V[wheel] = modulated(*modulation);
       } else if (const Column* current = numbered("wheel_current_A", wheel);
                  current && needs_.drive && !log.wheel_speed_rad_per_s[wheel].empty()) {
         log.voltage_V[wheel] = of_current(*current, log.wheel_speed_rad_per_s[wheel]);
       } else if (needs_.voltage) {
-        missing(fmt::format("wheel_pwm_ratio_{}", wheel + 1),
+        missing(fmt::format("wheel_modulation_ratio_{}", wheel + 1),
                 current ? "modulation; a current can replace it only if --motor gives the motor's resistance and torque constant"
                         : "modulation (or wheel_voltage_V, wheel_current_A)");
       }

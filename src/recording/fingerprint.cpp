@@ -102,9 +102,11 @@ std::string content_hash(const Recording& recording) {
   for (const Channel& channel : recording.channels) {
     channels.push_back(&channel);
   }
-  std::ranges::sort(channels, {}, [](const Channel* channel) { return channel->quantity.key; });
+  // The hash of a log must not change with the name of a quantity, because motor files contain it.
+  const auto key = [](const Channel* channel) { return earlier_key(channel->quantity.key); };
+  std::ranges::sort(channels, {}, key);
   for (const Channel* channel : channels) {
-    hash.add(channel->quantity.key);
+    hash.add(key(channel));
     std::ranges::for_each(channel->values, [&hash](double each) { hash.add(bits_of(each)); });
   }
   return fmt::format("{:016x}", hash.value());

@@ -88,7 +88,7 @@ Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
   if (has("wheel_speed_rad_per_s_") && std::ranges::none_of(quality.channels, turns)) {
     fitness.lacks.emplace_back(WheelsKeepSpeed{});
   }
-  if (!has("wheel_pwm_ratio_") && !has("wheel_voltage_V_") && !has("wheel_current_A_")) {
+  if (!has("wheel_modulation_ratio_") && !has("wheel_voltage_V_") && !has("wheel_current_A_")) {
     fitness.lacks.emplace_back(NoWheelEffort{});
   }
   return fitness;

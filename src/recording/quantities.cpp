@@ -44,7 +44,7 @@ constexpr std::array kTypes{
     QuantityType{"bus_A", Kind::heat_input, "A", kHeatInput, false, "current from the supply into the driver"},
     QuantityType{"power_in_W", Kind::heat_input, "W", kHeatInput, false, "electric power into the driver, its losses included"},
     QuantityType{"power_out_W", Kind::heat_input, "W", kHeatInput, false, "mechanical power at the shaft"},
-    QuantityType{"duty_ratio", Kind::heat_input, "", kHeatInput, false, "modulation of the driver, -1 … 1"},
+    QuantityType{"modulation_ratio", Kind::heat_input, "", kHeatInput, false, "modulation of the driver, -1 … 1", "duty_ratio"},
     QuantityType{"battery_V", Kind::signal, "V", kAny, false, "voltage of the robot's battery"},
     QuantityType{"vehicle_speed_m_per_s", Kind::signal, "m/s", kAny, false, "speed over ground: airflow"},
     QuantityType{"heading_rad", Kind::signal, "rad", kAny, false, "direction of travel in the robot's frame, 0 is ahead, anticlockwise"},
@@ -62,7 +62,7 @@ constexpr std::array kTypes{
     QuantityType{"wheel_angle_rad", Kind::signal, "rad", kAny, true, "angle of a wheel's motor shaft, counted on over turns"},
     QuantityType{"wheel_current_A", Kind::signal, "A", kAny, true, "current of a wheel's motor"},
     QuantityType{"wheel_voltage_V", Kind::signal, "V", kAny, true, "voltage at a wheel's motor, with sign"},
-    QuantityType{"wheel_pwm_ratio", Kind::signal, "", kAny, true, "modulation of a wheel's driver, -1 … 1"},
+    QuantityType{"wheel_modulation_ratio", Kind::signal, "", kAny, true, "modulation of a wheel's driver, -1 … 1", "wheel_pwm_ratio"},
     QuantityType{"wheel_winding_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the winding of a wheel's motor"},
     QuantityType{"wheel_stator_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the stator of a wheel's motor"},
 };
@@ -148,7 +148,26 @@ std::string_view to_string(QuantityKind kind) {
 
 std::span<const QuantityType> quantity_types() { return kTypes; }
 
-std::optional<Quantity> quantity_named(std::string_view key) {
+namespace {
+
+/// Replaces the name of a quantity in `key` by another one and keeps the number.
+std::string renamed(std::string_view key, std::string_view QuantityType::*from, std::string_view QuantityType::*to) {
+  for (const QuantityType& type : kTypes) {
+    const std::string_view name = type.is_numbered ? without_number(key) : key;
+    if (!type.alias.empty() && name == type.*from) {
+      return fmt::format("{}{}", type.*to, key.substr(name.size()));
+    }
+  }
+  return std::string(key);
+}
+
+}  // namespace
+
+std::string canonical_key(std::string_view key) { return renamed(key, &QuantityType::alias, &QuantityType::key); }
+std::string earlier_key(std::string_view key) { return renamed(key, &QuantityType::key, &QuantityType::alias); }
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+  const std::string key = canonical_key(name);
   const std::string_view stem = without_number(key);
   for (const QuantityType& type : kTypes) {
     if (type.is_numbered ? stem != key && type.key == stem : type.key == key) {

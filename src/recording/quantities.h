@@ -28,13 +28,14 @@ struct QuantityType {
   base::Range possible;   ///< in that unit; values outside are invalid
   bool is_numbered;
   std::string_view meaning;
+  std::string_view alias = {};  ///< earlier name, which logs and mappings may still use
 };
 std::span<const QuantityType> quantity_types();
 
 /// Heat inputs that checks of a log use as a measure of its heat, most direct first. Other columns of QuantityKind::heat_input, such as
 /// motor_d_V or power_out_W, say less about the heat and are not used for this.
-inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A", "power_in_W", "bus_A",          "torque_Nm",
-                                                             "motor_V",   "duty_ratio",  "bus_V",      "speed_rad_per_s"};
+inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A",      "power_in_W", "bus_A",          "torque_Nm",
+                                                             "motor_V",   "modulation_ratio", "bus_V",      "speed_rad_per_s"};
 /// The first ones heat the winding before the iron. Voltages and speed can act without load, and then heat the iron.
 inline constexpr std::size_t kWindingHeatInputs = 5;
 /// The first ones imply that no heat is produced where they are 0. Supply voltage and speed do not: a current may flow at standstill.
@@ -42,16 +43,21 @@ inline constexpr std::size_t kHeatInputsZeroAtRest = 7;
 
 /// Quantity of a channel, derived from its name.
 struct Quantity {
-  std::string key;  ///< name in the log
+  std::string key;  ///< name in the table, or of the column
   QuantityKind kind = QuantityKind::signal;
   std::string unit;  ///< UDUNITS text; "" is a pure number
   base::Range possible;
   std::string meaning;  ///< empty if the table does not have it
 };
 
-/// Returns the quantity from the table, or a free one whose name ends in a unit ("thrust_N", "flow_kg_per_s", "valve_ratio"). nullopt if
-/// the name does not end in a unit.
+/// Returns the quantity from the table, also for an alias, or a free one whose name ends in a unit ("thrust_N", "flow_kg_per_s",
+/// "valve_ratio"). nullopt if the name does not end in a unit.
 std::optional<Quantity> quantity_named(std::string_view key);
+
+/// Returns the name in the table for an alias, with its number; any other key as it is.
+std::string canonical_key(std::string_view key);
+/// Inverse of canonical_key(), for values derived from names before they had an alias.
+std::string earlier_key(std::string_view key);
 
 /// Returns a "did you mean" hint with the nearest name of the table, or an empty string.
 std::string nearest_quantity(std::string_view key);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "base/diagnostic.h"
@@ -146,7 +147,12 @@ class RecordingStream::Intake {
     const std::vector<QuantityMapping> quantities =
         mapping_.is_canonical() ? quantities_of_header(table_, log_.string(), report_) : mapping_.quantities;
     base::Diagnostics problems;
+    std::set<std::string> keys;
     for (const QuantityMapping& quantity : quantities) {
+      if (!keys.insert(quantity.quantity.key).second) {
+        problems.add(quantity.at, quantity.quantity.key,
+                     fmt::format("has two names: '{}' is the earlier one; keep one of the two", earlier_key(quantity.quantity.key)));
+      }
       if (quantity.quantity.meaning.empty() && !nearest_quantity(quantity.quantity.key).empty()) {
         report_.notes.emplace_back(AdditionalSignal{quantity.quantity.key});
       }

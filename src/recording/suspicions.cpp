@@ -139,7 +139,7 @@ class Suspector {
     for (const Channel& channel : recording_.channels) {
       const std::string& key = channel.quantity.key;
       const double top = top_of_sizes(channel.values);
-      if (key.starts_with("wheel_pwm_ratio") && top > 1.5) {
+      if (key.starts_with("wheel_modulation_ratio") && top > 1.5) {
         found_.emplace_back(ModulationAboveOne{key, top});
       } else if ((key == "battery_V" || key.starts_with("wheel_voltage_V")) && top > kLargestBattery_V) {
         found_.emplace_back(VoltageTooLarge{key, top});

@@ -121,7 +121,7 @@ inline constexpr std::array kQuantities{
     OperatingQuantity<S>{&P::velocity_rad_per_s, "velocity", "rad/s", 300.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "speed ω with its sign"},
     OperatingQuantity<S>{&P::current_rms_A, "current", "A", 5.0, AveragingRule::rms, false, Signal::current, "current_A", FromColumn::computed, "current", true, "rms current", true,
                          FirmwareInput{"current_A", "equivalent DC current (torque per torque constant), rms over the period, with the sign of the speed when the motor drives", WithoutPower::zero, WorstCase::both_directions}},
-    OperatingQuantity<S>{&P::modulation_ratio, "modulation", "", 0.5, AveragingRule::mean, false, Signal::modulation, "duty_ratio", FromColumn::computed, "modulation", true, "ratio |V_motor|/V_bus"},
+    OperatingQuantity<S>{&P::modulation_ratio, "modulation", "", 0.5, AveragingRule::mean, false, Signal::modulation, "modulation_ratio", FromColumn::computed, "modulation", true, "ratio |V_motor|/V_bus"},
     OperatingQuantity<S>{&P::shaft_power_W, "shaft_power", "W", 50.0, AveragingRule::mean, false, Signal::shaft_power, "torque_Nm", FromColumn::computed, "torque and speed", true, "mechanical power; above 0 while the motor drives"},
     OperatingQuantity<S>{&P::input_power_W, "input_power", "W", 80.0, AveragingRule::mean, false, Signal::input_power, "power_in_W", FromColumn::value, "input power", true, "electrical input power", true},
     OperatingQuantity<S>{&P::acceleration_rad_per_s2, "acceleration", "rad/s2", 100.0, AveragingRule::mean, true, Signal::speed, "", FromColumn::computed, "", true, "mean of |dω/dt|", false,

@@ -47,7 +47,7 @@ void shuffle_speed(recording::Recording& log, Dice& dice) {
     const auto other = static_cast<std::size_t>(dice.below(static_cast<int>(row)));
     for (recording::Channel& channel : log.channels) {
       const std::string& key = channel.quantity.key;
-      if (key == "speed_rad_per_s" || key == "duty_ratio" || key == "vehicle_speed_m_per_s") {
+      if (key == "speed_rad_per_s" || key == "modulation_ratio" || key == "vehicle_speed_m_per_s") {
         std::swap(channel.values[row - 1], channel.values[other]);
       }
     }

@@ -191,7 +191,8 @@ TrueRun run_motor(const MotorMake& make, const Missing& missing, const Surprise&
   };
   const std::size_t winding_at = channel("winding_C"), stator_at = channel("stator_C"), ambient_at = channel("ambient_C");
   const std::size_t current_at = channel("current_A"), speed_at = channel("speed_rad_per_s"), bus_at = channel("bus_V");
-  const std::size_t duty_at = channel("duty_ratio"), vehicle_at = channel("vehicle_speed_m_per_s"), neighbour_at = channel("neighbour_C");
+  const std::size_t duty_at = channel("modulation_ratio"), vehicle_at = channel("vehicle_speed_m_per_s"),
+                    neighbour_at = channel("neighbour_C");
   const std::size_t torque_at = channel("torque_Nm");
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const RowInputs& in = rows[k];

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadDrive{"percent",
                  of_each([](friction::DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each *= 100.0; }); }), 2,
-                 "wheel_pwm_ratio_1 reaches", 0, "is it in percent"},
+                 "wheel_modulation_ratio_1 reaches", 0, "is it in percent"},
         BadDrive{"millivolts", of_each([](friction::DriveRow& row) { row.battery_V *= 1000.0; }), 2, "is it in millivolts?", 0,
                  "is it in millivolts?"},
         BadDrive{"degrees", of_each([](friction::DriveRow& row) {

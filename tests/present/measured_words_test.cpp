@@ -61,8 +61,8 @@ TEST(WordsOfLogs, Suspicions) {
        "57.3)?"},
       {AngleSpansDegrees{"yaw_rad", 359.0}, "yaw_rad spans 359 rad: is it in degrees?"},
       {WheelRowsFarApart{20.0}, "the speeds of wheels are 20 s apart: is the time in milliseconds?"},
-      {ModulationAboveOne{"wheel_pwm_ratio_1", 97.0},
-       "wheel_pwm_ratio_1 reaches 97: is it in percent or in counts of a timer? 1 is the whole battery voltage"},
+      {ModulationAboveOne{"wheel_modulation_ratio_1", 97.0},
+       "wheel_modulation_ratio_1 reaches 97: is it in percent or in counts of a timer? 1 is the whole battery voltage"},
       {VoltageTooLarge{"battery_V", 24000.0}, "battery_V reaches 24000 V: is it in millivolts?"},
       {LastsForDays{8.64e5, 1000.0, TimeUnit::milliseconds}, "the log lasts 10 days at 1000 s per row: is the time in milliseconds?"},
       {LastsForDays{8.64e8, 1e6, TimeUnit::microseconds}, "the log lasts 10000 days at 1000000 s per row: is the time in microseconds?"},
@@ -114,7 +114,7 @@ TEST(WordsOfLogs, LacksDelaysAndNotes) {
       {HeatInputIsZero{"current_A"}, "there is no heat input: current_A is 0 throughout"},
       {NoWheelSpeed{}, "it has no speeds of wheels (wheel_speed_rad_per_s_1, …)"},
       {WheelsKeepSpeed{}, "no wheel changes its speed beyond the noise"},
-      {NoWheelEffort{}, "it has no effort of wheels (wheel_pwm_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)"},
+      {NoWheelEffort{}, "it has no effort of wheels (wheel_modulation_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)"},
   });
   expect_words<NoDelayReason>({
       {IntervalsTooShort{}, "the intervals without a gap are too short"},

@@ -120,7 +120,7 @@ TEST_F(MeasuredLogs, WheelMotors) {
   EXPECT_TRUE(quality_.drive.is_good());
   EXPECT_FALSE(quality_.thermal.is_good());
   EXPECT_EQ(read("ateam_wheel_motor", "Model2_neg.csv").rows(), 7597U);
-  EXPECT_NEAR(channel("wheel_pwm_ratio_1").high, 0.089153, 1e-9);
+  EXPECT_NEAR(channel("wheel_modulation_ratio_1").high, 0.089153, 1e-9);
 }
 
 TEST_F(MeasuredLogs, EveryFileOfTheOmniRobot) {

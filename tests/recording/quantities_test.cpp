@@ -41,6 +41,20 @@ TEST(Quantities, TableIsSoundAndItsNamesEndInTheirUnits) {
   }
 }
 
+TEST(Quantities, AliasGivesTheQuantityOfTheTable) {
+  EXPECT_EQ(quantity_named("duty_ratio")->key, "modulation_ratio");
+  EXPECT_EQ(quantity_named("wheel_pwm_ratio_3")->key, "wheel_modulation_ratio_3");
+  EXPECT_EQ(quantity_named("wheel_pwm_ratio_3")->meaning, quantity_named("wheel_modulation_ratio_3")->meaning);
+  EXPECT_EQ(canonical_key("winding_C"), "winding_C");
+  EXPECT_EQ(earlier_key("wheel_modulation_ratio_3"), "wheel_pwm_ratio_3");
+  EXPECT_EQ(earlier_key("winding_C"), "winding_C");
+  for (const QuantityType& type : quantity_types()) {
+    for (const QuantityType& other : quantity_types()) {
+      EXPECT_NE(type.key, other.alias) << "the alias of one quantity is the name of another";
+    }
+  }
+}
+
 TEST(Quantities, NearestNameIsSuggested) { EXPECT_EQ(nearest_quantity("windng_C"), "; did you mean 'winding_C'?"); }
 
 }  // namespace

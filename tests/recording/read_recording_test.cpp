@@ -212,6 +212,30 @@ TEST(ReadRecording, DamagedLogsNeverCrash) {
   EXPECT_LT(failures, 190);
 }
 
+// Motor files contain the content hash of logs that were read under the earlier name.
+TEST(ReadRecording, EarlierNameGivesTheSameRecording) {
+  RecordingReport report;
+  const std::string rows = "\n0.1,20,0.5,0.25\n1.1,21,0.5,0.25\n2.1,22,0.1,0.5\n";
+  const Recording earlier = read("time_s,winding_C,duty_ratio,wheel_pwm_ratio_2" + rows, report);
+  const Recording now = read("time_s,winding_C,modulation_ratio,wheel_modulation_ratio_2" + rows, report);
+  ASSERT_NE(earlier.find("modulation_ratio"), nullptr);
+  EXPECT_EQ(earlier.find("modulation_ratio")->values, now.find("modulation_ratio")->values);
+  EXPECT_EQ(earlier.find("wheel_modulation_ratio_2")->values, now.find("wheel_modulation_ratio_2")->values);
+  EXPECT_EQ(earlier.content, now.content);
+  EXPECT_EQ(to_canonical_csv(earlier), to_canonical_csv(now));
+}
+
+TEST(ReadRecording, TwoNamesOfOneQuantityAreAProblem) {
+  RecordingReport report;
+  try {
+    read("time_s,winding_C,duty_ratio,modulation_ratio\n0.1,20,0.5,0.5\n1.1,21,0.5,0.5\n", report);
+    ADD_FAILURE() << "read";
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), HasSubstr("modulation_ratio: has two names: 'duty_ratio' is the earlier one"));
+  }
+}
+
 TEST(ReadRecording, CanonicalFormReadsBackTheSame) {
   RecordingReport report;
   const Recording first = read("time_s,winding_C,current_A,flow_m3_per_s\n0.1,20.123456789,1,0.5\n1.1,,2,\n2.1,22,0.1,7e-9\n", report);

@@ -186,7 +186,7 @@ std::string say(const recording::NoWheelSpeed& /*of*/) { return "it has no speed
 std::string say(const recording::WheelsKeepSpeed& /*of*/) { return "no wheel changes its speed beyond the noise"; }
 
 std::string say(const recording::NoWheelEffort& /*of*/) {
-  return "it has no effort of wheels (wheel_pwm_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)";
+  return "it has no effort of wheels (wheel_modulation_ratio_1, wheel_voltage_V_1 or wheel_current_A_1, …)";
 }
 
 std::string say(const recording::ColumnWithoutUnit& of) {

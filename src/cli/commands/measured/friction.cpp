@@ -150,7 +150,7 @@ Command friction() {
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<FrictionOptions>();
             app.add_option("logs", options->logs,
-                           "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_pwm_ratio_1 … with battery_V (or "
+                           "logs of the drives: wheel_speed_rad_per_s_1 …, wheel_modulation_ratio_1 … with battery_V (or "
                            "wheel_current_A_1 …), heading_rad or another signal of the direction")
                 ->required()
                 ->type_name("LOG");
