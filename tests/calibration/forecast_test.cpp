@@ -35,6 +35,8 @@ std::vector<recording::Recording> logs_of(const estimation::TwoNodeTruth& truth,
 
 /// The tests of a rate take the seeds 1 to kSeeds.
 constexpr int kSeeds = 4;
+/// Seed of tests of properties that every log has.
+constexpr std::uint64_t kAnySeed = 1;
 
 std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, const std::vector<recording::Recording>& logs) {
   std::vector<estimation::RunNote> notes;
@@ -44,7 +46,7 @@ std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, const s
 /// White noise has as many independent samples as samples. For x(k+1) = a·x(k) + noise the share is (1 − a)/(1 + a).
 TEST(IndependentSamples, AreThoseOfKnownProcesses) {
   constexpr int kSamples = 20'000;
-  base::Random random(4, 1);
+  base::Random random(kAnySeed, 1);
   for (const double kept : {0.0, 0.5, 0.9}) {
     Eigen::VectorXd error_K(kSamples);
     double now_K = 0.0;
@@ -206,7 +208,7 @@ TEST(Prediction, TakesATorqueForACurrent) {
   const Folder folder;
   const Sheet sheet{.truth = {}, .resistance_spread = {}, .no_load_current_A = 0.2};
   const motor::Motor motor = sheet.motor(folder);
-  recording::Recording with_current = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
+  recording::Recording with_current = estimation::generated_log(sheet.truth, long_enough(), kAnySeed, 0);
   const std::size_t rows = with_current.rows();
   with_current.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::vector<double>(rows, 100.0)});
   recording::Recording with_torque = with_current;
@@ -233,7 +235,7 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   const Sheet sheet;
   const motor::Motor motor = sheet.motor(folder);
   constexpr double kPower_W = 4.0;
-  recording::Recording log = estimation::generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, 3, 0);
+  recording::Recording log = estimation::generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, kAnySeed, 0);
   std::erase_if(log.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
   log.channels.push_back({*recording::quantity_named("power_in_W"), std::vector<double>(log.rows(), kPower_W)});
   const PredictedRun run = predict(motor, std::vector{log}, PredictionOptions{}).runs.front();
@@ -246,7 +248,7 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
 TEST(Prediction, ACurrentBesideTheInputPowerIsNotCountedTwice) {
   const Folder folder;
   const Sheet sheet;
-  recording::Recording both = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
+  recording::Recording both = estimation::generated_log(sheet.truth, long_enough(), kAnySeed, 0);
   both.channels.push_back({*recording::quantity_named("power_in_W"), std::vector<double>(both.rows(), 4.0)});
   recording::Recording power_only = both;
   std::erase_if(power_only.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
@@ -280,7 +282,7 @@ TEST(Prediction, BlankCellsOfTheSignalOfAnEffectAreGaps) {
                            .parameters = {known(0.3), known(0.7)},
                            .condition = {},
                            .column = {}});
-  recording::Recording windy = estimation::generated_log(sheet.truth, long_enough(), 3, 0);
+  recording::Recording windy = estimation::generated_log(sheet.truth, long_enough(), kAnySeed, 0);
   windy.channels.push_back({*recording::quantity_named("vehicle_speed_m_per_s"), std::vector<double>(windy.rows(), 3.0)});
   recording::Recording blank = windy;
   for (std::size_t row = 1; row + 1 < blank.rows(); row += 2) {
@@ -353,7 +355,7 @@ TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   motor.fit->parameters = {"thermal_resistance_winding_stator"};
   motor.fit->correlation = motor::Correlation(std::size_t{1});
   motor.fit->band = motor::ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
-  base::Random random(5, 0);
+  base::Random random(kAnySeed, 0);
   constexpr int kDraws = 4000;
   double squares = 0.0;
   for (int i = 0; i < kDraws; ++i) {

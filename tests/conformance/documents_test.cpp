@@ -1,9 +1,11 @@
-// Runs every command in README.md, docs/ and the report of the checks, and compares its output with the shown output.
+// Runs every command in README.md, docs/ and reports/, and compares its output with the shown output. generate_test.cpp runs `make host`
+// and `make firmware` of src/firmware/templates/README.md, which needs the names of a robot and a motor first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "program_run.h"
@@ -75,6 +77,12 @@ bool is_for_the_checkout(const std::string& command) {
                              [&](const std::string& begin) { return command.starts_with(begin); });
 }
 
+/// Recordings of others are not part of the project: commands that read them from $DATA cannot run here, nor can those that use their
+/// output.
+bool needs_recordings(const Block& block) {
+  return std::ranges::any_of(block.lines, [](const std::string& line) { return line.find("$DATA") != std::string::npos; });
+}
+
 /// True if the lines occur in the text in this order. Gaps are allowed only at a line "…".
 bool shows(const std::string& text, const std::vector<std::string>& expected) {
   std::vector<std::string> lines;
@@ -100,9 +108,14 @@ bool shows(const std::string& text, const std::vector<std::string>& expected) {
 }
 
 std::vector<std::string> documents() {
-  std::vector<std::string> all{"README.md", "reports/check/README.md"};
+  std::vector<std::string> all{"README.md"};
   for (const std::string& name : files_of(kSource / "docs", "", ".md")) {
     all.push_back("docs/" + name);
+  }
+  for (const std::string& name : files_of(kSource / "reports", "", "")) {
+    if (fs::exists(kSource / "reports" / name / "README.md")) {
+      all.push_back("reports/" + name + "/README.md");
+    }
   }
   return all;
 }
@@ -132,7 +145,7 @@ TEST_P(Document, shows_commands_that_run_and_their_output) {
       continue;
     }
     for (const Shown& shown : commands_of(block)) {
-      if (is_for_the_checkout(shown.command)) {
+      if (is_for_the_checkout(shown.command) || needs_recordings(block)) {
         continue;
       }
       const ProgramRun result = run_line(shown.command, options_);
@@ -200,6 +213,7 @@ TEST_P(VerbTable, shows_output_of_the_example_in_the_help) {
   const std::vector<Block> blocks = blocks_of(page);
   ASSERT_EQ(blocks.size(), 1U);
   const ProgramRun result = run_line(blocks.front().lines.front(), options_);
+  EXPECT_LE(result.exit_code, 1) << result.err;
   for (const VerbCell& each : verb_cells()) {
     if (each.verb == verb) {
       EXPECT_THAT(with_single_blanks(result.out), HasSubstr(with_single_blanks(each.output))) << result.err;
@@ -216,6 +230,53 @@ std::vector<std::string> shown_verbs() {
 }
 
 INSTANTIATE_TEST_SUITE_P(verbs, VerbTable, testing::ValuesIn(shown_verbs()), [](const auto& instance) { return instance.param; });
+
+/// Commands that the tests of the documents run.
+std::set<std::string> commands_in_documents() {
+  std::set<std::string> all;
+  for (const std::string& name : documents()) {
+    for (const Block& block : blocks_of(content_of(kSource / name))) {
+      for (const Shown& shown : commands_of(block)) {
+        all.insert(shown.command);
+      }
+    }
+  }
+  return all;
+}
+
+/// Pages of the reference, one for each verb.
+class ReferencePage : public Document {};
+
+TEST_P(ReferencePage, has_examples_that_run) {
+  const std::vector<Block> blocks = blocks_of(content_of(kSource / "docs" / "reference" / (GetParam() + ".md")));
+  ASSERT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks.front().language, "sh");
+  // VerbTable runs the first example of a verb of the table.
+  std::vector<Shown> commands = commands_of(blocks.front());
+  const std::vector<std::string> in_table = shown_verbs();
+  const bool is_run = std::ranges::find(in_table, GetParam()) != in_table.end();
+  commands.erase(commands.begin(), commands.begin() + (is_run ? 1 : 0));
+  const std::set<std::string> in_documents = commands_in_documents();
+  for (const Shown& each : commands) {
+    if (in_documents.contains(each.command)) {
+      continue;
+    }
+    const ProgramRun result = run_line(each.command, options_);
+    EXPECT_LE(result.exit_code, 1) << each.command << "\n" << result.err;
+  }
+}
+
+std::vector<std::string> documented_verbs() {
+  std::vector<std::string> verbs;
+  for (const std::string& name : files_of(kSource / "docs" / "reference", "", ".md")) {
+    if (name != "README.md") {
+      verbs.push_back(fs::path(name).stem().string());
+    }
+  }
+  return verbs;
+}
+
+INSTANTIATE_TEST_SUITE_P(verbs, ReferencePage, testing::ValuesIn(documented_verbs()), [](const auto& instance) { return instance.param; });
 
 TEST(Documents, every_verb_with_output_is_in_the_table) { EXPECT_GE(shown_verbs().size(), 13U); }
 

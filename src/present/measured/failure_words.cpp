@@ -40,7 +40,7 @@ base::Failure worded(const recording::NothingAboutHeat& failure) {
   return {failure.code(), "", std::move(diagnostics)};
 }
 
-std::string words_of(const std::optional<recording::RowsGivenTwice::Lines>& lines) {
+std::string line_words(const std::optional<recording::RowsGivenTwice::Lines>& lines) {
   return lines ? fmt::format("lines {} to {}", lines->first, lines->last) : "its rows";
 }
 
@@ -49,8 +49,8 @@ base::Failure worded(const recording::RowsGivenTwice& failure) {
   for (const auto& [rows, earlier] : failure.pairs()) {
     diagnostics.push_back({{rows.file.string(), rows.lines ? rows.lines->first : 0, 1},
                            {},
-                           fmt::format("{} share rows with {} of {}; give each row once, to fit or as hold-out", words_of(rows.lines),
-                                       words_of(earlier.lines), earlier.file.string())});
+                           fmt::format("{} share rows with {} of {}; give each row once, to fit or as hold-out", line_words(rows.lines),
+                                       line_words(earlier.lines), earlier.file.string())});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }

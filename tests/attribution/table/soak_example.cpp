@@ -1,5 +1,4 @@
-// Writes the synthetic logs of reports/soak: a wheel motor whose stator is bolted to a chassis that absorbs heat. The data sheet's two-node
-// model lacks the chassis. Every run writes the same bytes.
+// Writes the synthetic logs of reports/soak, see soak_scenario.h. Every run writes the same bytes.
 //   heatsoak_soak_example FOLDER
 #include <fmt/format.h>
 
@@ -7,27 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drive_rows.h"
-#include "truth_motor.h"
+#include "soak_scenario.h"
 
 namespace {
 
 using namespace heatsoak::attribution::truth;
-
-constexpr int kRows = 1200;
-
-/// The data sheet's drag torque K_t·I_0, and a chassis of 0.4 kg of aluminium behind the motor's flange.
-Missing chassis() {
-  Missing missing;
-  missing.heat.push_back([](const Moment& m, PerPart& q) {
-    q[yoke] += 0.0369 * 0.234 * std::abs(m.in.speed_rad_per_s);
-    const double into_chassis_W = 0.22 * (m.part_C[shield_front] - m.part_C[lump_a]);
-    q[shield_front] -= into_chassis_W;
-    q[lump_a] += into_chassis_W - 0.1 * (m.part_C[lump_a] - m.in.ambient_C);
-  });
-  missing.lump_capacity_J_per_K[lump_a] = 360.0;
-  return missing;
-}
 
 void write(const std::filesystem::path& file, const heatsoak::recording::Recording& log) {
   std::ofstream out(file);
@@ -49,24 +32,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: heatsoak_soak_example FOLDER\n");
     return 2;
   }
-  const MotorMake make{.copper_capacity_J_per_K = 6.6,
-                       .iron_capacity_J_per_K = 54.0,
-                       .copper_to_iron_K_per_W = 4.4,
-                       .iron_to_air_K_per_W = 3.9,
-                       .resistance_25C_ohm = 0.608,
-                       .copper_per_K = 0.0039};
-  const Missing missing = chassis();
-  const Surprise surprise{
-      .flux_W = 0.04, .flux_time_s = 200.0, .noise_K = 0.12, .step_K = 0.1, .outlier_probability = 0.002, .gap_probability = 0.0005};
   const std::filesystem::path folder(argv[1]);
   std::filesystem::create_directories(folder);
-  double age_h = 0.0;
-  for (const int number : {1, 2, 3}) {
-    const auto seed = static_cast<std::uint64_t>(500 + number);
-    const TrueRun run = run_motor(make, missing, surprise, robot_rows(kRows, seed), age_h, seed, fmt::format("match_{}", number));
+  for (const TrueRun& run : soak_runs(500)) {
     write(folder / (run.log.name + ".csv"), run.log);
-    age_h += kRows / 3600.0;
   }
-  const TrueRun bench = run_motor(make, missing, surprise, bench_rows(1800, 510), age_h, 510, "bench");
-  write(folder / "bench.csv", bench.log);
 }
