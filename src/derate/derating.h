@@ -85,7 +85,7 @@ long least_samples(const GuaranteeOptions& options);
 /// Computes the derating. Values without a tolerance get a default one first (with_default_spreads()). Finds the smallest safety factor on
 /// heat at which the share of drawn motors that keep every limit in every use reaches the confidence. Then raises the factor until, on
 /// independently drawn motors, the lower bound of that share (kCertainty_share) reaches the confidence as well. Throws Failure: bad_input
-/// if the period is too long for the motor, or if the samples are too few for the confidence; limit_exceeded if no factor suffices
+/// if the period is too long for the motor, or if the samples are too few for the confidence. limit_exceeded if no factor suffices,
 /// because the motor exceeds a limit without current.
 Derating derate(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress = {});
 

@@ -50,8 +50,8 @@ void read_csv(const std::filesystem::path& path, std::span<const std::string> re
               const std::function<void(const CsvRow&)>& row);
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               std::span<const CsvWords> words, const std::function<void(const CsvRow&)>& row);
-/// The same for files with several possible layouts. A last row without a line break may be incomplete: if `cut_off` is given, such a row
-/// is skipped and `cut_off` is called with its line number; otherwise it is read as usual.
+/// The same for files with several possible layouts. A last row without a line break may be incomplete. If `cut_off` is given, such a row
+/// is skipped, and `cut_off` is called with its line number. Otherwise it is read as usual.
 void read_csv(const std::filesystem::path& path, const ChooseCsvColumns& choose, std::span<const CsvWords> words,
               const std::function<void(const CsvRow&)>& row, const std::function<void(int line)>& cut_off = {});
 

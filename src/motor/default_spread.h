@@ -34,8 +34,8 @@ bool needs_spread(std::string_view key);
 std::vector<DefaultSpread> default_spreads(const Motor& motor);
 
 /// A stated spread that is narrower than is credible for the origin of its value: on one side less than a quarter of the default of that
-/// key and origin. The spread of a measured value is too narrow if two conditions hold: it is less than a quarter of the default of a data
-/// sheet value, and less than 2 % (1 % if the file records the fit that gave the value).
+/// key and origin. For a measured value two conditions must hold: less than a quarter of the default of a data sheet value, and less than 2
+/// %. The 2 % become 1 % if the file records the fit that gave the value.
 struct NarrowSpread {
   std::string key;
   const base::ParameterValue* parameter = nullptr;
