@@ -101,12 +101,12 @@ bool has_signal(const recording::Recording& recording, thermal::Signal signal, c
 /// Returns the columns that a recording lacks for a comparison with the model: needed signals, the surroundings' temperature, any sensor.
 std::vector<base::Diagnostic> lacking_columns(const recording::Recording& recording, const MeasuredRunOptions& options);
 
-/// Splits a recording into runs whose inputs are known. These runs replace those of the recording, which are split at every gap of more
-/// than three usual steps: they are joined again across gaps of at most 10 s in which no temperature changes by more than
+/// Splits a recording into runs whose inputs are known. The recording itself is split at every gap of more than three usual steps; these
+/// runs replace that split. Its parts are joined again across gaps of at most 10 s in which no temperature changes by more than
 /// Thresholds::jump_K. A merged interval ends at a row of the log. Its temperature is the mean over the rows within ± 0.1 · longest_step_s
-/// of that row, or NaN if the cell of that row is blank. Sensors are winding_C and stator_C, without it housing_C. Throws Failure:
-/// bad_input if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval if no segment with all of them
-/// is left.
+/// of that row, or NaN if the cell of that row is blank. Sensors are winding_C and stator_C, without it housing_C. Throws Failure
+/// (bad_input) if a needed signal, the surroundings' temperature or every sensor is missing; NoUsableInterval if no segment with all of
+/// them is left.
 MeasuredRuns measured_runs(const recording::Recording& recording, const MeasuredRunOptions& options);
 
 /// Merges every `merged` intervals into one with the same heat. Readings are not averaged; log columns are dropped.
