@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <string_view>
+#include <vector>
 
 #include "drive_rows.h"
+#include "truth_motor.h"
 
 namespace heatsoak::attribution::truth {
 namespace {
@@ -24,7 +29,19 @@ Missing chassis() {
   return missing;
 }
 
-}  // namespace
+void write(const std::filesystem::path& file, const recording::Recording& log) {
+  std::ofstream out(file);
+  out << "time_s,winding_C,stator_C,ambient_C,current_A,speed_rad_per_s\n";
+  for (std::size_t k = 0; k < log.rows(); ++k) {
+    out << fmt::format("{:.0f}", log.time_s[k]);
+    for (const std::string_view key :
+         std::array<std::string_view, 5>{"winding_C", "stator_C", "ambient_C", "current_A", "speed_rad_per_s"}) {
+      const double value = log.find(key)->values[k];
+      out << (std::isnan(value) ? "," : fmt::format(",{:.2f}", value));
+    }
+    out << "\n";
+  }
+}
 
 std::vector<TrueRun> soak_runs(std::uint64_t seed) {
   const MotorMake make{.copper_capacity_J_per_K = 6.6,
@@ -45,6 +62,15 @@ std::vector<TrueRun> soak_runs(std::uint64_t seed) {
   }
   runs.push_back(run_motor(make, missing, surprise, bench_rows(1800, seed + 10), age_h, seed + 10, "bench"));
   return runs;
+}
+
+}  // namespace
+
+void write_soak_logs(std::uint64_t seed, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const TrueRun& run : soak_runs(seed)) {
+    write(folder / (run.log.name + ".csv"), run.log);
+  }
 }
 
 }  // namespace heatsoak::attribution::truth

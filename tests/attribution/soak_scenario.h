@@ -2,16 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
-
-#include "truth_motor.h"
+#include <filesystem>
 
 namespace heatsoak::attribution::truth {
 
 /// Id of its motor file.
 inline constexpr const char* kSoakMotor = "maxon_ec45_flat_70w_24v";
 
-/// Returns three matches of 20 min and then a run on the bench of 30 min. Another seed gives other loads, noise and unknown heat.
-std::vector<TrueRun> soak_runs(std::uint64_t seed);
+/// Writes the logs match_1.csv to match_3.csv of 20 min and then bench.csv of 30 min, which a user would have. Another seed gives other
+/// loads, noise and unknown heat. Creates the folder.
+void write_soak_logs(std::uint64_t seed, const std::filesystem::path& folder);
 
 }  // namespace heatsoak::attribution::truth

@@ -13,6 +13,7 @@
 
 #include "program_run.h"
 #include "soak_example.h"
+#include "support/longest_line.h"
 
 namespace heatsoak {
 namespace {
