@@ -33,6 +33,7 @@ TEST(Diagnose, AnswersForTheShippedExampleInTextJsonAndPage) {
   ASSERT_EQ(answer["verdict"] == "effect_found", !answer["effects"].empty()) << done.out;
   const std::string page = content_of(folder.path() / "found/diagnosis.html");
   const std::string extended = content_of(folder.path() / "found/maxon_ec45_flat_70w_24v.toml");
+  EXPECT_LE(longest_line(extended), 160U);
   for (const nlohmann::json& effect : answer["effects"]) {
     for (const char* key : {"node", "parameters", "heat_W", "evidence", "confusable_with"}) {
       EXPECT_TRUE(effect.contains(key)) << key;
