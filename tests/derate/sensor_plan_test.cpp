@@ -52,7 +52,9 @@ TEST(SensorPlan, ALessAccurateSensorPermitsNoMore) {
   options.sensor->accuracy_K = 20.0;
   const Derating coarse = derate(ecx_32(), twente(), options);
   ASSERT_TRUE(coarse.sensor);
-  EXPECT_GE(coarse.sensor->observer.heat_safety_factor(), thermistor_derating().sensor->observer.heat_safety_factor());
+  // Both searches end on grids of their own, up to 1 % above the smallest factor that holds (FactorGrid).
+  constexpr double kGrid_ratio = 1.01;
+  EXPECT_GE(kGrid_ratio * coarse.sensor->observer.heat_safety_factor(), thermistor_derating().sensor->observer.heat_safety_factor());
   for (std::size_t i = 0; i < coarse.sensor->lasting.size(); ++i) {
     EXPECT_LE(coarse.sensor->lasting[i].with_A, thermistor_derating().sensor->lasting[i].with_A) << i;
   }
