@@ -171,7 +171,7 @@ std::string toml_text(std::string_view text) {
 
 std::string with_short_lines(std::string_view toml) {
   std::string text;
-  bool is_inside = false;  // of a multi-line string
+  bool is_in_long_string = false;
   for (std::size_t begin = 0; begin < toml.size();) {
     const std::size_t end = std::min(toml.find('\n', begin), toml.size());
     const std::string_view line = toml.substr(begin, end - begin);
@@ -179,9 +179,9 @@ std::string with_short_lines(std::string_view toml) {
     for (std::size_t at = line.find(kClosing); at != std::string_view::npos; at = line.find(kClosing, at + kClosing.size())) {
       ++quotes;
     }
-    text += is_inside || quotes > 0 ? std::string(line) : BrokenLine(line).text();
+    text += is_in_long_string || quotes > 0 ? std::string(line) : BrokenLine(line).text();
     text += end < toml.size() ? "\n" : "";
-    is_inside = is_inside != (quotes % 2 == 1);
+    is_in_long_string = is_in_long_string != (quotes % 2 == 1);
     begin = end + 1;
   }
   return text;

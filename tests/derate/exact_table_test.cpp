@@ -9,27 +9,17 @@
 #include "derate/barrier.h"
 #include "derate/integer_form/quantised_table.h"
 #include "guarded_motor.h"
+#include "support/motors_of_database.h"
 
 namespace heatsoak::derate {
 namespace {
-
-std::vector<std::string> all_motors() {
-  std::vector<std::string> ids;
-  for (const auto& entry : std::filesystem::directory_iterator(kSource / "motor_db")) {
-    if (entry.path().extension() == ".toml") {
-      ids.push_back(entry.path().stem().string());
-    }
-  }
-  std::ranges::sort(ids);
-  return ids;
-}
 
 class ExactTable : public testing::TestWithParam<const char*> {};
 
 // The third place of the winding's axis is 3 K above the limit, where no current is allowed any more.
 TEST_P(ExactTable, DataSheetNeedsTheEndsOfItsAxesOnly) {
   const robot::Robot robot = shipped_robot(GetParam());
-  const std::vector<std::string> ids = all_motors();
+  const std::vector<std::string> ids = motors_of_database();
   ASSERT_GE(ids.size(), 31U);
   for (const std::string& id : ids) {
     const motor::Motor motor = shipped_motor(id);

@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 
+#include "support/motors_of_database.h"
 #include "support/source_folder.h"
 
 namespace heatsoak::motor {
@@ -45,17 +46,6 @@ std::string said_by(const std::string& check, const Motor& motor) {
 }
 
 // Every motor of the database must pass.
-
-std::vector<std::string> motors_of_database() {
-  std::vector<std::string> ids;
-  for (const auto& entry : std::filesystem::directory_iterator(kSource / "motor_db")) {
-    if (entry.path().extension() == ".toml") {
-      ids.push_back(entry.path().stem().string());
-    }
-  }
-  std::ranges::sort(ids);
-  return ids;
-}
 
 class MotorOfDatabase : public testing::TestWithParam<std::string> {};
 
