@@ -13,6 +13,7 @@
 #include "base/binomial_bound.h"
 #include "base/diagnostic.h"
 #include "derate/motor_verdicts.h"
+#include "derate/own_friction.h"
 #include "derate/search_work.h"
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
@@ -77,11 +78,10 @@ BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot,
   rules.hottest_ambient_C = options.hottest_ambient_C;
   // When braking at full speed, the back-EMF adds to the supply voltage.
   rules.most_current_A = std::min(robot.drive.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
-  constexpr double kPushed = 1.1;  // a pushed robot may turn its motors faster than its battery can
-  rules.most_speed_rad_per_s = kPushed * std::min(full_V(robot), robot.drive.voltage_limit_V) / values.torque_constant_Nm_per_A;
+  rules.most_speed_rad_per_s = kPushed_ratio * std::min(full_V(robot), robot.drive.voltage_limit_V) / values.torque_constant_Nm_per_A;
   // Other firmware may use the full battery voltage of a driver whose command is limited here.
   rules.no_current_speed_rad_per_s =
-      std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed * full_V(robot) / values.torque_constant_Nm_per_A);
+      std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed_ratio * full_V(robot) / values.torque_constant_Nm_per_A);
   rules.most_vehicle_speed_m_per_s = rules.most_speed_rad_per_s / robot.drive.gear_ratio * robot.wheels.radius_m;
   return rules;
 }
@@ -321,6 +321,35 @@ class Search {
 
 }  // namespace
 
+std::vector<ActingEffect> acting_effects(const thermal::Network& network, const motor::Motor& motor) {
+  const std::vector<double> values = network.values();
+  std::vector<ActingEffect> all;
+  for (const thermal::EffectInPlace& effect : network.effects()) {
+    const auto own = std::ranges::find(motor.effects, effect.name, &motor::MotorEffect::name);
+    ActingEffect acting{effect.name,
+                        std::string(effect.type->name),
+                        std::string(effect.type->equation),
+                        own == motor.effects.end() ? std::string() : own->column,
+                        {},
+                        {}};
+    for (const int node : effect.node_index) {
+      acting.nodes.emplace_back(network.node_name(node));
+    }
+    const std::vector<base::ParameterSpec>& specs = effect.type->parameters;
+    std::vector<double> own_values;
+    for (const int index : effect.parameter_index) {
+      own_values.push_back(values[static_cast<std::size_t>(index)]);
+    }
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+      const bool is_choice = !specs[i].choices.empty();
+      acting.parameters.push_back({std::string(specs[i].key), std::string(base::unit_of(specs, i, own_values)), own_values[i],
+                                   is_choice ? std::string(specs[i].choices[static_cast<std::size_t>(own_values[i])].name) : ""});
+    }
+    all.push_back(std::move(acting));
+  }
+  return all;
+}
+
 long least_samples(const GuaranteeOptions& options) { return base::fewest_draws(1.0 - options.required_share, kCertainty_share); }
 
 double limp_current_A(const Derating& derating) {
@@ -348,7 +377,7 @@ Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const
                   .table = std::move(promise.table),
                   .options = options,
                   .assumed = motor.assumed,
-                  .effects = {},
+                  .effects = acting_effects(search.network(), motor),
                   .guarantee = promise.guarantee,
                   .uses = std::move(promise.uses),
                   .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
@@ -358,11 +387,7 @@ Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const
                   .heating_current_ratio = robot::heating_factor(robot),
                   .nominal = motor.nominal,
                   .provenance = {}};
-  for (const thermal::EffectInPlace& effect : search.network().effects()) {
-    const auto own = std::ranges::find(motor.effects, effect.name, &motor::MotorEffect::name);
-    result.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation),
-                              own == motor.effects.end() ? std::string() : own->column});
-  }
+  require_own_friction(result);
   if (options.sensor) {
     result.sensor = plan_sensor(as_written, robot, result, *options.sensor, &work);
   }

@@ -25,6 +25,9 @@ struct DerateOptions {
   std::optional<SensorOptions> sensor = {};
 };
 
+/// A pushed robot may turn its motors faster than a full battery can, by this factor.
+inline constexpr double kPushed_ratio = 1.1;
+
 /// Default of `approach_s` as a share of the winding's nominal time constant. It was chosen by the distance that a robot with the ECX FLAT
 /// 32 L lost to the limit in three generated matches. With the tolerances of the motor file, on the hard match, it lost 14.6 % with a share
 /// of 1/24, 6.4 % with 1/4 and 5.3 % with 1. With the tolerances of a bench test it lost 0.2, 0.3 and more than 0.8 %.
@@ -39,12 +42,22 @@ double approach_s(const motor::Motor& motor, const DerateOptions& options);
 /// speed without the command limit if that is more. Throws Failure (bad_input) if the winding limit is not above the hottest air.
 BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options);
 
+/// Nominal value of a parameter of an effect.
+struct EffectParameter {
+  std::string key;
+  std::string unit;    ///< UDUNITS text; empty for a pure number
+  double value = 0.0;
+  std::string choice;  ///< name of the choice if the parameter is one, else empty
+};
+
 /// An effect of the observer's network.
 struct ActingEffect {
   std::string name;
   std::string type;
   std::string equation;
   std::string column;  ///< log column over which the effect has a curve: the observer uses the curve's hottest value; empty if none
+  std::vector<std::string> nodes = {};  ///< names of the nodes in the order of the type's roles
+  std::vector<EffectParameter> parameters = {};
 };
 
 struct Derating {
@@ -82,11 +95,14 @@ double limp_current_A(const Derating& derating);
 /// Smallest number of drawn motors that can show the confidence, if none of them exceeds a limit: 59 for 0.95.
 long least_samples(const GuaranteeOptions& options);
 
+/// Returns the effects of the network with their nominal parameters. `motor` names the columns of their curves.
+std::vector<ActingEffect> acting_effects(const thermal::Network& network, const motor::Motor& motor);
+
 /// Computes the derating. Values without a tolerance get a default one first (with_default_spreads()). Finds the smallest safety factor on
 /// heat at which the share of drawn motors that keep every limit in every use reaches the confidence. Then raises the factor until, on
 /// independently drawn motors, the lower bound of that share (kCertainty_share) reaches the confidence as well. Throws Failure: bad_input
 /// if the period is too long for the motor, or if the samples are too few for the confidence. limit_exceeded if no factor suffices,
-/// because the motor exceeds a limit without current.
+/// because the motor exceeds a limit without current, or if its lasting current is below its no-load current (require_own_friction()).
 Derating derate(const motor::Motor& motor, const robot::Robot& robot, const DerateOptions& options, const base::Progress& progress = {});
 
 }  // namespace heatsoak::derate

@@ -62,6 +62,21 @@ TEST(DerateForms, RefuseAMotorThatCannotBearItsOwnFriction) {
   }
 }
 
+// The guard would allow less current than the motor needs to turn.
+TEST(DerateForms, RefuseAMotorWhoseLastingCurrentDoesNotTurnIt) {
+  const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  for (const std::string& form : forms()) {
+    const TemporaryFolder folder;
+    RunOptions here;
+    here.folder = folder.path();
+    write(folder.path() / "motor.toml", std::regex_replace(shipped, std::regex("(winding_limit = \\{ value = \")155"), "$0145"));
+    const ProgramRun done = run(kDerate + Words{"--motor", "motor.toml", "--to", form, "--out", "x"}, here);
+    EXPECT_EQ(done.exit_code, 1) << form << done.err;
+    EXPECT_THAT(done.err, AllOf(HasSubstr("cannot hold its own friction"), HasSubstr("no-load current of 0.25 A"))) << form;
+    EXPECT_THAT(folder.names(), testing::ElementsAre("motor.toml")) << form;
+  }
+}
+
 TEST(DerateForms, RefuseANumberThatIsNone) {
   const std::string shipped = content_of(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   for (const std::string& form : forms()) {

@@ -27,10 +27,7 @@ inline Derating derating_of(const motor::Motor& motor) {
   derating.rules = guarded.rules;
   derating.table = guarded.table;
   derating.reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s;
-  derating.effects.clear();
-  for (const thermal::EffectInPlace& effect : guarded.network.effects()) {
-    derating.effects.push_back({effect.name, std::string(effect.type->name), std::string(effect.type->equation), ""});
-  }
+  derating.effects = acting_effects(guarded.network, motor);
   return derating;
 }
 
