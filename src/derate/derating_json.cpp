@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "derate/export_text.h"
+#include "derate/power_off.h"
+#include "derate/rate_lines.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak::derate {
@@ -26,10 +28,52 @@ bool is_datasheet_alone(const Derating& derating) {
          });
 }
 
+/// Shortest decimal that reads back as the same number; in parentheses if negative.
+std::string number_text(double value) {
+  std::string text = fmt::format("{}", value);
+  text += text.find_first_of(".e") == std::string::npos ? ".0" : "";
+  return value < 0.0 ? fmt::format("({})", text) : text;
+}
+
+/// The laws of a motor with effects of its own as statements of C, traced as for every generated guard.
+Json rate_lines_json(const Derating& derating) {
+  static const LineStyle kStyle{
+      .literal = number_text,
+      .signal = [](observed::Signal signal) { return std::string(observed::signals()[static_cast<std::size_t>(signal)].name); },
+      .square_root = "sqrt",
+      .number = "double",
+      .exponential = "exp",
+      .power = "positive_power"};
+  const std::string text = RateLines(derating.observer, derating.observer.rate_steps(), kStyle).text();
+  Json lines = Json::array();
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    lines.push_back(text.substr(text.find_first_not_of(' ', begin), end - text.find_first_not_of(' ', begin)));
+    begin = end + 1;
+  }
+  return {{"language",
+           "C with <math.h>, in order; state_C in the order of 'nodes', other inputs as in 'signals'; positive_power(x, y) is pow(x, y) for "
+           "x > 0, else 0"},
+          {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_safety_factor())},
+          {"rate_lines", lines}};
+}
+
+Json effect_json(const ActingEffect& effect) {
+  Json parameters = Json::array();
+  for (const EffectParameter& each : effect.parameters) {
+    parameters.push_back({{"key", each.key},
+                          {"value", each.choice.empty() ? Json(rounded_to_12_digits(each.value)) : Json(each.choice)},
+                          {"unit", each.unit}});
+  }
+  return {{"id", effect.name},         {"type", effect.type},
+          {"equation", effect.equation}, {"nodes", effect.nodes},
+          {"parameters", parameters},  {"column_at_its_hottest", effect.column.empty() ? Json() : Json(effect.column)}};
+}
+
 /// The equations are included, so that the numbers can be used without another file.
 Json observer_json(const Derating& derating) {
   if (!is_datasheet_alone(derating)) {
-    return nullptr;
+    return rate_lines_json(derating);
   }
   const motor::MotorValues& motor = derating.nominal;
   return {
@@ -152,12 +196,29 @@ Json sensor_json(const Derating& derating) {
           {"lasting_current", lasting}};
 }
 
+Json power_off_json(const Derating& derating) {
+  const PowerOffReport report = power_off_report(derating);
+  Json cases = Json::array();
+  for (const PowerOffCase& each : report.cases) {
+    Json allowed = Json::array();
+    for (const double current_A : each.allowed_A) {
+      allowed.push_back(rounded(current_A, 3));
+    }
+    cases.push_back({{"after", each.name}, {"off_s", each.off_s ? Json(*each.off_s) : Json()}, {"allowed_A", allowed}});
+  }
+  Json start_C = Json::array();
+  for (const double node_C : report.start_C) {
+    start_C.push_back(rounded(node_C, 2));
+  }
+  return {{"before_C", start_C}, {"allowed_after_s", kPowerOffMoments_s}, {"cases", cases}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json derating_json(const Derating& derating) {
   Json effects = Json::array();
   for (const ActingEffect& effect : derating.effects) {
-    effects.push_back({{"id", effect.name}, {"type", effect.type}});
+    effects.push_back(effect_json(effect));
   }
   Json signals = Json::array();
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
@@ -187,6 +248,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"signals", signals},
           {"effects", effects},
           {"observer", observer_json(derating)},
+          {"power_off", power_off_json(derating)},
           {"guarantee", guarantee_json(derating, derating.guarantee)},
           {"sensor", sensor_json(derating)},
           {"table", table_json(derating.table)}};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "derate/derating.h"
@@ -27,6 +29,22 @@ std::vector<double> resting_C(const Derating& derating, std::span<const int> rat
 /// Largest number of steps of a generated restore: cool-down in Runge-Kutta steps, and heating of unsaved time in periods of the guard.
 inline constexpr int kMostCoolingSteps = 1024;
 inline constexpr int kMostHeatingSteps = 4096;
+
+/// Allowed current at standstill in the hottest air after one kind of power loss.
+struct PowerOffCase {
+  std::string_view name;          ///< "2 s without power"
+  std::optional<double> off_s;    ///< known time without power; empty: unknown, or nothing could be restored
+  std::vector<double> allowed_A;  ///< at each of kPowerOffMoments_s after power-on
+};
+inline constexpr std::array kPowerOffMoments_s{1.0, 10.0, 60.0};
+
+struct PowerOffReport {
+  std::vector<double> start_C;  ///< every node before the loss of power: its hottest steady state at the full allowed current
+  std::vector<PowerOffCase> cases;
+};
+/// Returns what the guard's memory is worth for this motor: no loss of power, 2 s, an unknown time, and a damaged buffer, which counts as a
+/// motor at its limit. No time is unsaved and no board sensor is used.
+PowerOffReport power_off_report(const Derating& derating);
 
 /// Larger than the last digit of a temperature in single precision and in the integer form.
 inline constexpr double kRounding_K = 0.01;

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/quantity.h"
 #include "base/version.h"
 #include "derate/export_text.h"
+#include "derate/own_friction.h"
+#include "derate/power_off.h"
 #include "motor/datasheet_network.h"
 #include "present/evaluation.h"
 #include "present/motor_notes.h"
@@ -83,6 +86,25 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
                   derate::significant_above(bound.stator_slope_A_per_K, 2), derate::significant_above(bound.speed_slope_A_s_per_rad, 2)));
 }
 
+/// Adds what the memory over power-off is worth, and a warning if the motor can be pushed to a speed at which it cannot turn itself.
+void add_power_off_and_friction(Document& document, const derate::Derating& derating) {
+  std::string cases;
+  for (const derate::PowerOffCase& each : derate::power_off_report(derating).cases) {
+    cases += fmt::format("{}{} {:.1f} A", cases.empty() ? "" : "; ", each.name, fmt::join(each.allowed_A, ", "));
+  }
+  document.add_note(Severity::background,
+                    fmt::format("Allowed at standstill {:.0f} s after power-on, if every part was as hot as permitted before (save and "
+                                "restore of the guard): {}.",
+                                fmt::join(derate::kPowerOffMoments_s, ", "), cases));
+  const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
+  if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {
+    document.add_note(Severity::warning,
+                      fmt::format("The lasting current for every speed, {:.2f} A, is below the no-load current of {:.2f} A: a wheel of "
+                                  "unknown speed stops. Above {:.0f} rad/s, where only a push turns the motor, it cannot turn for ever.",
+                                  limp_A, friction->needed_A, friction->held_rad_per_s));
+  }
+}
+
 /// Adds the benefit and the possible faults of the sensor, if there is one.
 void add_sensor(Document& document, const derate::Derating& derating) {
   if (!derating.sensor) {
@@ -124,13 +146,35 @@ std::string place_text(const derate::TablePlace& place) {
                      place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
+std::string holding_words() { return fmt::format("still holds: no current is above a fresh table by more than {}", derate::kIgnored); }
+
+/// Lists the lines that explain the difference best.
+void add_differing_lines(Document& document, const std::vector<derate::HeaderDifference>& differing) {
+  constexpr std::size_t kMostShown = 5;
+  document.add_note(Severity::warning, "Unsafe: the observer differs from that of a fresh header, so the table has another meaning.");
+  Table table{.title = differing.size() > kMostShown
+                           ? fmt::format("Differing lines, {} of {}; laws and limits first", kMostShown, differing.size())
+                           : "Differing lines; laws and limits first",
+              .columns = {{"line", "", 0},
+                          {"committed header", "", 0, Alignment::left},
+                          {.name = "fresh header", .alignment = Alignment::left, .is_prose = true}},
+              .rows = {}};
+  for (const derate::HeaderDifference& each : std::span(differing).first(std::min(kMostShown, differing.size()))) {
+    table.rows.push_back({{std::to_string(each.line)}, {each.text}, {each.other_text}});
+  }
+  document.tables.insert(document.tables.begin(), std::move(table));
+}
+
 /// Returns in one line why a committed table must not be used any more.
 std::string broken_words(const derate::TableCheck& check) {
   const derate::TableComparison& found = check.found;
   const std::string why = found.is_other_motor ? fmt::format("it is for another motor, {}", check.committed.motor_id)
                           : found.excess.difference_A > 0.0
                               ? fmt::format("it allows up to {:.3f} A more than a fresh table", found.excess.difference_A)
-                              : fmt::format("its observer differs from a fresh one in line {}", found.differing_line);
+                              : fmt::format("its observer differs from a fresh one in {} {}, the first in line {}: \"{}\", fresh \"{}\"",
+                                            found.differing.size(), found.differing.size() == 1 ? "place" : "places",
+                                            found.differing.front().line, found.differing.front().text,
+                                            found.differing.front().other_text);
   return fmt::format("no longer holds: {}; write it again with --out", why);
 }
 
@@ -175,6 +219,7 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
   }
   document.tables.push_back(allowed_currents(derating));
   add_table_notes(document, derating);
+  add_power_off_and_friction(document, derating);
   add_sensor(document, derating);
   add_lines(document.notes, doubtful_fits({&motor, 1}), Severity::warning);
   add_lines(document.notes, default_spreads_text({&motor, 1}), Severity::note);
@@ -185,7 +230,7 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
 void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check) {
   const derate::TableComparison& found = check.found;
   document.headline.insert(document.headline.begin(),
-                           {fmt::format("{}: {}", check.committed.file.string(), check.found.holds() ? "still holds" : broken_words(check)),
+                           {fmt::format("{}: {}", check.committed.file.string(), check.found.holds() ? holding_words() : broken_words(check)),
                             check.found.holds() ? Tone::good : Tone::bad});
   if (found.is_other_motor) {
     document.add_note(Severity::warning, fmt::format("Unsafe: the table is for another motor, {}; expected a table for {}.",
@@ -195,11 +240,8 @@ void add_table_check(Document& document, const derate::Derating& derating, const
     document.add_note(Severity::warning, fmt::format("Unsafe: the table allows up to {:.3f} A more than a fresh table, {}.",
                                                      found.excess.difference_A, place_text(found.excess)));
   }
-  if (found.differing_line > 0) {
-    document.add_note(Severity::warning,
-                      fmt::format("Unsafe: the observer differs from that of a fresh header, so the table has another meaning. Line {} is "
-                                  "\"{}\"; a fresh header has \"{}\".",
-                                  found.differing_line, found.differing_text, found.differing_fresh_text));
+  if (!found.differing.empty()) {
+    add_differing_lines(document, found.differing);
   }
   if (found.lost.difference_A > 0.0) {
     document.add_note(Severity::note,

@@ -1,10 +1,13 @@
 // Tests of all exporters, then of JSON and MuJoCo.
+#include <dlfcn.h>
 #include <expat.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -109,7 +112,6 @@ exponent = { value = "0.8", origin = "estimated", derivation = "a test" }
 
 TEST(Exporters, RefuseByNameWhatTheyCannotExpress) {
   const Derating chassis = derating_of(ecx_32_with(kChassis));
-  EXPECT_TRUE(nlohmann::json::parse(exported("json", chassis))["observer"].is_null());
   EXPECT_THAT(refusal("mujoco", chassis), HasSubstr("mujoco cannot express chassis (third_node)"));
   EXPECT_EQ(refusal("moteus", chassis), "accepted") << "the stator's sensor sees what the chassis does";
   EXPECT_EQ(refusal("vesc", chassis), "accepted");
@@ -129,6 +131,88 @@ TEST(Exporters, RefuseByNameWhatTheyCannotExpress) {
   }
 }
 
+/// Compiles the lines as their 'language' states and returns dT/dt.
+std::vector<double> rates_of_lines(const nlohmann::json& file, const std::vector<double>& signals, const std::vector<double>& state_C) {
+  const std::filesystem::path stem =
+      std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_rate_lines_{}", static_cast<int>(getpid()));
+  std::string text = "#include <math.h>\nstatic inline double positive_power(double x, double y) { return x > 0.0 ? pow(x, y) : 0.0; }\n"
+                     "void rates(const double *in, const double *state_C, double *rate_K_per_s) {\n";
+  for (std::size_t i = 0; i < file["signals"].size(); ++i) {
+    text += fmt::format("  const double {0} = in[{1}];\n  (void){0};\n", file["signals"][i]["name"].get<std::string>(), i);
+  }
+  text += "  (void)positive_power;\n";
+  for (const nlohmann::json& line : file["observer"]["rate_lines"]) {
+    text += line.get<std::string>() + "\n";
+  }
+  std::ofstream(stem.string() + ".c") << text << "}\n";
+  EXPECT_EQ(std::system(fmt::format("cc -std=c99 -Wall -Werror -ffp-contract=off -shared -fPIC -o '{0}.so' '{0}.c' -lm", stem.string()).c_str()), 0)
+      << text;
+  void* const library = dlopen((stem.string() + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
+  EXPECT_NE(library, nullptr) << dlerror();
+  std::vector<double> rate_K_per_s(state_C.size());
+  reinterpret_cast<void (*)(const double*, const double*, double*)>(dlsym(library, "rates"))(signals.data(), state_C.data(),
+                                                                                             rate_K_per_s.data());
+  dlclose(library);
+  std::filesystem::remove(stem.string() + ".c");
+  std::filesystem::remove(stem.string() + ".so");
+  return rate_K_per_s;
+}
+
+// The equation of two nodes cannot express other effects, so their laws are written as statements. Before, the file had only names.
+TEST(JsonExporter, LawsOfEveryEffectCanBeComputedFromTheFile) {
+  for (const char* const laws : {kChassis, kAirflow, kPowerAndExponential}) {
+    const Derating derating = derating_of(ecx_32_with(laws));
+    const nlohmann::json file = nlohmann::json::parse(exported("json", derating));
+    std::vector<double> state_C(derating.observer.state_count());
+    for (std::size_t node = 0; node < state_C.size(); ++node) {
+      state_C[node] = 120.0 - 17.0 * static_cast<double>(node);
+    }
+    std::vector<double> inputs{3.0, -200.0, 31.0, 1.5, 55.0, 100.0, 2.0};
+    std::vector<double> used;
+    for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+      if (derating.observer.uses(static_cast<observed::Signal>(i))) {
+        used.push_back(inputs[i]);
+      }
+    }
+    inputs.insert(inputs.end(), state_C.begin(), state_C.end());
+    std::vector<double> expected_K_per_s(state_C.size());
+    thermal::FormulaRun<double>(derating.observer.formula(), derating.observer.rate_steps()).run(inputs, expected_K_per_s);
+    const std::vector<double> found_K_per_s = rates_of_lines(file, used, state_C);
+    for (std::size_t node = 0; node < state_C.size(); ++node) {
+      // The C library and the formula may round an exponential differently.
+      EXPECT_NEAR(found_K_per_s[node], expected_K_per_s[node], 1e-9 * (1.0 + std::abs(expected_K_per_s[node]))) << laws << node;
+    }
+  }
+}
+
+TEST(JsonExporter, EveryEffectHasItsParameters) {
+  const nlohmann::json file = nlohmann::json::parse(exported("json", derating_of(ecx_32_with(kChassis))));
+  const auto effect = std::ranges::find(file["effects"], "chassis", [](const nlohmann::json& each) { return each["id"].get<std::string>(); });
+  ASSERT_NE(effect, file["effects"].end());
+  EXPECT_EQ((*effect)["nodes"].size(), 2U);
+  std::map<std::string, nlohmann::json> by_key;
+  for (const nlohmann::json& each : (*effect)["parameters"]) {
+    by_key[each["key"]] = each;
+  }
+  EXPECT_EQ(by_key.at("heat_capacity")["value"], 60.0);
+  EXPECT_EQ(by_key.at("heat_capacity")["unit"], "J/K");
+  EXPECT_EQ(by_key.at("conductance")["value"], 0.3);
+  EXPECT_EQ(by_key.at("leak_ratio")["value"], 0.2);
+  for (const nlohmann::json& each : file["effects"]) {
+    EXPECT_FALSE(each["parameters"].empty()) << each;
+  }
+}
+
+TEST(JsonExporter, ChoiceOfAnEffectIsItsName) {
+  const nlohmann::json file = nlohmann::json::parse(exported("json", derating_of(ecx_32_with(hump(R"(driver = "speed"
+hot = "stator"
+first_knot = { value = "0 rad/s", origin = "estimated", derivation = "a test" }
+last_knot = { value = "360 rad/s", origin = "estimated", derivation = "a test" }
+)", 4.0)))));
+  const std::string text = file["effects"].dump();
+  EXPECT_THAT(text, HasSubstr("\"key\":\"form\",\"value\":\"heat\""));
+}
+
 /// Returns the attributes of an element.
 std::map<std::string, std::string> attributes_of(const std::string& xml, const std::string& element) {
   struct Search {
@@ -146,6 +230,19 @@ std::map<std::string, std::string> attributes_of(const std::string& xml, const s
   EXPECT_EQ(XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1), XML_STATUS_OK) << XML_ErrorString(XML_GetErrorCode(parser));
   XML_ParserFree(parser);
   return search.found;
+}
+
+// MuJoCo's own schema is not part of the project. HEATSOAK_MJCF_XSD names it (src/xml/generated/mjcf.xsd).
+TEST(MujocoExporter, FollowsTheOfficialSchema) {
+  const char* const schema = std::getenv("HEATSOAK_MJCF_XSD");
+  if (schema == nullptr) {
+    GTEST_SKIP() << "HEATSOAK_MJCF_XSD is not set";
+  }
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_mujoco_{}.xml", static_cast<int>(getpid()));
+  std::ofstream(file) << exported("mujoco");
+  EXPECT_EQ(std::system(fmt::format("xmllint --noout --schema '{}' '{}'", schema, file.string()).c_str()), 0);
+  std::filesystem::remove(file);
 }
 
 /// MuJoCo, src/engine/engine_forward.c: dT/dt = (R·i² − T/R_th)/C with T above ambient; doc/XMLreference.rst: order of the attributes.

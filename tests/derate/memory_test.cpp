@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "compiled_guard.h"
+#include "derate/power_off.h"
 #include "exported_motor.h"
 #include "powered_off_motor.h"
 #include "thermal/transient.h"
@@ -288,6 +289,52 @@ TEST_F(Memory, TheDocumentsTableIsWhatTheHeaderDoes) {
   std::stringstream page;
   page << std::ifstream(kSource / "docs/power_off.md").rdbuf();
   EXPECT_THAT(page.str(), testing::HasSubstr(table)) << "put this into docs/power_off.md:\n" << table;
+}
+
+class PowerOffReportTest : public testing::TestWithParam<const char*> {};
+
+// Reference: the generated header, started from the same temperatures.
+TEST_P(PowerOffReportTest, IsWhatTheHeaderDoes) {
+  const std::string_view laws = GetParam();
+  Derating derating = laws.empty() ? ecx_derating() : derating_of(ecx_32_with(std::string(laws)));
+  derating.rules.hottest_ambient_C = ecx_derating().rules.hottest_ambient_C;
+  const PowerOffReport report = power_off_report(derating);
+  ASSERT_EQ(report.cases.size(), 4U);
+  const CompiledGuard guard(derating, "report");
+  const std::size_t nodes = derating.observer.state_count();
+  ModelGuard before(guard);
+  before.start(100.0F);
+  const std::vector<unsigned char> hot = with_temperatures(before.saved(nodes), {report.start_C.begin(), report.start_C.end()});
+  const float elapsed_s[] = {0.0F, 2.0F, kUnknown_s, 2.0F};
+  for (std::size_t i = 0; i < report.cases.size(); ++i) {
+    std::vector<unsigned char> buffer = hot;
+    buffer[5] ^= i == 3 ? 1U : 0U;
+    ModelGuard motor(guard);
+    motor.restore(buffer, elapsed_s[i], 0.0F, 40.0F);
+    CompiledGuard::Output out;
+    int steps = 0;
+    for (std::size_t k = 0; k < kPowerOffMoments_s.size(); ++k) {
+      for (; steps < static_cast<int>(std::lround(kPowerOffMoments_s[k] / 0.01)); ++steps) {
+        out = motor.step({0.0F, 0.0F, 40.0F});
+      }
+      EXPECT_NEAR(report.cases[i].allowed_A[k], out.allowed_A, 0.02) << report.cases[i].name << ", " << kPowerOffMoments_s[k] << " s";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Motors, PowerOffReportTest, testing::Values("", kPowerAndExponential));
+
+TEST(PowerOffReport, BeginsWithAMotorAtItsLimit) {
+  const PowerOffReport report = power_off_report(ecx_derating());
+  EXPECT_NEAR(report.start_C[0], 155.0, 0.5);
+  EXPECT_LT(report.start_C[1], report.start_C[0]);
+  EXPECT_GT(report.start_C[1], 60.0);
+  const auto allowed = [&](std::size_t i) { return report.cases[i].allowed_A; };
+  for (std::size_t k = 0; k < kPowerOffMoments_s.size(); ++k) {
+    EXPECT_GT(allowed(1)[k], allowed(0)[k]) << "it has cooled for 2 s";
+    EXPECT_LE(allowed(2)[k], allowed(0)[k]) << "power may have returned at once";
+    EXPECT_LT(allowed(3)[k], allowed(2)[k]) << "everything at the limit";
+  }
 }
 
 }  // namespace
