@@ -16,7 +16,6 @@
 #include "base/files.h"
 #include "base/quantity.h"
 #include "derate/exporter.h"
-#include "derate/header_text.h"
 #include "derate/integer_form/quantised_table.h"
 #include "input/csv.h"
 
@@ -331,7 +330,6 @@ void compare_rows(const std::vector<CommittedRow>& rows, const CurrentTable& fre
 
 /// Returns the difference in A that rounding of the file may cause.
 double tolerance_A(const CommittedTable& committed, const CurrentTable& fresh) {
-  constexpr double kRounding_share = 5e-4;
   double most_A = fresh.largest_A();
   if (committed.table) {
     most_A = std::max(most_A, committed.table->largest_A());
@@ -339,7 +337,7 @@ double tolerance_A(const CommittedTable& committed, const CurrentTable& fresh) {
   for (const CommittedRow& row : committed.rows) {
     most_A = std::max(most_A, row.current_A);
   }
-  return kRounding_share * most_A;
+  return kIgnored_share * most_A;
 }
 
 std::string fresh_header(const Derating& fresh, bool is_integer) {
@@ -418,10 +416,7 @@ TableComparison compare(const CommittedTable& committed, const Derating& fresh) 
   }
   compare_rows(committed.rows, fresh.table, rounding_A, found);
   if (!committed.code.empty()) {
-    const HeaderDifference difference = first_difference(committed.code, fresh_header(fresh, committed.is_integer));
-    found.differing_line = difference.line;
-    found.differing_text = difference.text;
-    found.differing_fresh_text = difference.other_text;
+    found.differing = differences(committed.code, fresh_header(fresh, committed.is_integer));
   }
   return found;
 }

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "derate/derating.h"
+#include "derate/header_text.h"
 
 namespace heatsoak::derate {
 
@@ -53,20 +55,22 @@ struct TablePlace {
 struct TableComparison {
   TablePlace excess;  ///< the committed table allows more current: unsafe
   TablePlace lost;    ///< the committed table allows less current: safe, but wasteful
-  /// Only for a C header: first line outside of tables and comments that differs from a fresh header, from 1; 0 if none differs. If one
-  /// does, the observer in the firmware is not the observer that the table was checked with.
-  int differing_line = 0;
-  std::string differing_text;        ///< text of `differing_line`
-  std::string differing_fresh_text;  ///< line of the fresh header at the same place
+  /// Only for a C header: statements outside of tables and comments that differ from a fresh header, the most telling first. If there is
+  /// one, the observer in the firmware is not the observer that the table was checked with.
+  std::vector<HeaderDifference> differing;
   bool is_other_motor = false;       ///< the file names a motor, and it is another one
 
   /// Returns whether the committed table is safe to use.
-  [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing_line == 0; }
+  [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing.empty(); }
 };
+
+/// Words for kIgnored_share, which every answer of a comparison states.
+inline constexpr double kIgnored_share = 5e-4;
+inline constexpr std::string_view kIgnored = "0.05 % of the largest current";
 
 /// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
 /// axes. This suffices, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores
-/// differences below 0.05 % of the largest current (rounding of the file). In the other lines of a header, numbers that agree to 1 in 10⁴
+/// differences below kIgnored_share of the largest current, which rounding of the file may cause. In the other lines of a header, numbers that agree to 1 in 10⁴
 /// count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 

@@ -6,8 +6,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <span>
 #include <system_error>
+#include <utility>
 
 namespace heatsoak::derate {
 namespace {
@@ -129,6 +132,110 @@ std::string line_around(std::string_view text, std::size_t place) {
   return line.size() > kLongest ? fmt::format("{} …", line.substr(0, kLongest)) : std::string(line);
 }
 
+/// Tokens up to a semicolon or a brace, or those of a line of the preprocessor. Statements do not depend on line breaks.
+using Statement = std::span<const Token>;
+
+std::vector<Statement> statements(std::string_view text, const std::vector<Token>& all) {
+  std::vector<Statement> found;
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin;
+    if (all[begin].text == "#") {
+      const std::size_t line_end = std::min(text.find('\n', all[begin].place), text.size());
+      while (end < all.size() && all[end].place < line_end) {
+        ++end;
+      }
+    } else {
+      while (end < all.size() && all[end].text != ";" && all[end].text != "{" && all[end].text != "}" && all[end].text != "#") {
+        ++end;
+      }
+      end += end < all.size() && all[end].text != "#" ? 1 : 0;
+    }
+    found.emplace_back(all.data() + begin, end - begin);
+    begin = end;
+  }
+  return found;
+}
+
+bool same_token(const Token& one, const Token& other) { return say_the_same(one.text, other.text); }
+bool same_statement(Statement one, Statement other) { return std::ranges::equal(one, other, same_token); }
+
+/// A statement of one header without an equal one in the other; an empty one is missing.
+struct Unequal {
+  Statement own;
+  Statement other;
+  std::size_t before = 0;  ///< index of the first header's statement before which a missing one belongs
+};
+
+/// Pairs statements by their position; `first` is the index of the first one in the first header.
+void pair_up(std::span<const Statement> own, std::span<const Statement> other, std::size_t first, std::vector<Unequal>& found) {
+  for (std::size_t i = 0; i < std::max(own.size(), other.size()); ++i) {
+    found.push_back({i < own.size() ? own[i] : Statement(), i < other.size() ? other[i] : Statement(), first + std::min(i, own.size())});
+  }
+}
+
+/// Lengths of the longest common subsequences of all pairs of ends (Wagner and Fischer 1974).
+std::vector<int> common_lengths(std::span<const Statement> own, std::span<const Statement> other) {
+  const std::size_t columns = other.size() + 1;
+  std::vector<int> common((own.size() + 1) * columns, 0);
+  for (std::size_t i = own.size(); i-- > 0;) {
+    for (std::size_t k = other.size(); k-- > 0;) {
+      common[i * columns + k] = same_statement(own[i], other[k]) ? common[(i + 1) * columns + k + 1] + 1
+                                                                 : std::max(common[(i + 1) * columns + k], common[i * columns + k + 1]);
+    }
+  }
+  return common;
+}
+
+/// Returns the statements outside of a longest common subsequence. Pairs them by position if there are too many.
+std::vector<Unequal> unequal(std::span<const Statement> own, std::span<const Statement> other) {
+  constexpr std::size_t kMostCompared = 4'000'000;
+  const auto [one, two] = std::ranges::mismatch(own, other, same_statement);
+  const auto same_begin = static_cast<std::size_t>(one - own.begin());
+  own = own.subspan(same_begin);
+  other = other.subspan(same_begin);
+  std::vector<Unequal> found;
+  if (own.size() * other.size() > kMostCompared) {
+    pair_up(own, other, same_begin, found);
+    return found;
+  }
+  const std::vector<int> common = common_lengths(own, other);
+  const std::size_t columns = other.size() + 1;
+  for (std::size_t i = 0, k = 0; i < own.size() || k < other.size(); ++i, ++k) {
+    const std::size_t first_i = i;
+    const std::size_t first_k = k;
+    while (i < own.size() && k < other.size() && !same_statement(own[i], other[k])) {
+      ++(common[(i + 1) * columns + k] >= common[i * columns + k + 1] ? i : k);
+    }
+    if (i == own.size() || k == other.size()) {
+      i = own.size();
+      k = other.size();
+    }
+    pair_up(own.subspan(first_i, i - first_i), other.subspan(first_k, k - first_k), same_begin + first_i, found);
+  }
+  return found;
+}
+
+/// Returns 0 for a physical law or a limit, 2 for a constant that is derived from them, 1 for the rest.
+int rank(Statement statement) {
+  constexpr std::string_view kLaws[] = {"rate_K_per_s", "change"};
+  constexpr std::string_view kLimits[] = {"_LIMIT_", "_AMBIENT_", "_PERIOD_", "_MOST_CURRENT_", "_MOST_SPEED_", "_TORQUE_CONSTANT_"};
+  constexpr std::string_view kDerived[] = {"_STRAIGHT_BELOW_", "_RESISTANCE_", "_WINDING_PER_STATOR_", "_LIMP_", "_NO_CURRENT_SPEED_",
+                                           "_REACHABLE_",      "_resting",     "_possible_",           "_table",  "_SENSOR_"};
+  const auto contains_any = [&](std::span<const std::string_view> words, std::size_t tokens) {
+    return std::ranges::any_of(statement.first(std::min(tokens, statement.size())), [&](const Token& token) {
+      return std::ranges::any_of(words, [&](std::string_view word) { return token.text.find(word) != std::string_view::npos; });
+    });
+  };
+  constexpr std::size_t kBegin = 4;  // "# define NAME", "const float name ="
+  const bool is_define = statement.size() > 1 && statement.front().text == "#";
+  const bool is_law = statement.size() > 3 && (std::ranges::find(kLaws, statement.front().text) != std::end(kLaws) ||
+                                               (statement.front().text == "const" && statement[2].text.ends_with("_W")));
+  if (is_law || (is_define && contains_any(kLimits, kBegin) && !contains_any(kDerived, kBegin))) {
+    return 0;
+  }
+  return contains_any(kDerived, kBegin) ? 2 : 1;
+}
+
 }  // namespace
 
 std::vector<HeaderArray> header_arrays(std::string_view text) {
@@ -147,17 +254,29 @@ std::vector<HeaderArray> header_arrays(std::string_view text) {
   return all;
 }
 
-HeaderDifference first_difference(std::string_view header, std::string_view other) {
-  const std::vector<Token> own = tokens(header);
-  const std::vector<Token> others = tokens(other);
-  const auto [one, two] = std::ranges::mismatch(own, others, [](const Token& a, const Token& b) { return say_the_same(a.text, b.text); });
-  if (one == own.end() && two == others.end()) {
-    return {};
+std::vector<HeaderDifference> differences(std::string_view header, std::string_view other) {
+  const std::vector<Token> own_tokens = tokens(header);
+  const std::vector<Token> other_tokens = tokens(other);
+  const std::vector<Statement> own = statements(header, own_tokens);
+  const std::vector<Statement> others = statements(other, other_tokens);
+  std::vector<std::pair<int, HeaderDifference>> found;
+  for (const Unequal& each : unequal(own, others)) {
+    const auto [one, two] = std::ranges::mismatch(each.own, each.other, same_token);
+    const auto place_of = [](Statement statement, Statement::iterator token) {
+      return token == statement.end() ? statement.back().place : token->place;
+    };
+    const std::size_t place = !each.own.empty()            ? place_of(each.own, one)
+                              : each.before < own.size() ? own[each.before].front().place
+                                                         : header.size() - 1;
+    const auto lines = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(place), '\n');
+    found.emplace_back(rank(each.own.empty() ? each.other : each.own),
+                       HeaderDifference{1 + static_cast<int>(lines), each.own.empty() ? "(missing)" : line_around(header, place),
+                                        each.other.empty() ? "(missing)" : line_around(other, place_of(each.other, two))});
   }
-  const std::size_t place = one == own.end() ? header.size() - 1 : one->place;
-  const auto lines = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(place), '\n');
-  return {1 + static_cast<int>(lines), line_around(header, place),
-          two == others.end() ? std::string("(the fresh header ends here)") : line_around(other, two->place)};
+  std::ranges::stable_sort(found, {}, &std::pair<int, HeaderDifference>::first);
+  std::vector<HeaderDifference> all;
+  std::ranges::transform(found, std::back_inserter(all), &std::pair<int, HeaderDifference>::second);
+  return all;
 }
 
 }  // namespace heatsoak::derate

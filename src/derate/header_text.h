@@ -18,15 +18,16 @@ struct HeaderArray {
 /// Returns all arrays of a header.
 std::vector<HeaderArray> header_arrays(std::string_view text);
 
-/// First difference between two headers.
+/// A statement in which two headers differ.
 struct HeaderDifference {
-  int line = 0;            ///< in the first header, from 1; 0 if both are equal
+  int line = 0;            ///< line of the first different token in the first header, from 1
   std::string text;        ///< text of that line, shortened to 100 bytes
   std::string other_text;  ///< line of the other header at the same place
 };
 
-/// Returns the first token in which two headers differ. Ignores comments, derating tables, versions, signatures and include guards. Numbers
-/// that agree to 1 in 10⁴ are equal.
-HeaderDifference first_difference(std::string_view header, std::string_view other);
+/// Returns the statements in which two headers differ: physical laws and limits first, then the others, and last the constants that are
+/// derived from them; each group in the order of the header. Ignores comments, line breaks, derating tables, versions, signatures and include
+/// guards. Numbers that agree to 1 in 10⁴ are equal.
+std::vector<HeaderDifference> differences(std::string_view header, std::string_view other);
 
 }  // namespace heatsoak::derate

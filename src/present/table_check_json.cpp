@@ -16,11 +16,20 @@ Json json(const derate::TablePlace& place) {
 Json table_check_json(const derate::TableCheck& check) {
   const derate::CommittedTable& committed = check.committed;
   const auto text = [](const std::string& words) { return words.empty() ? Json() : Json(words); };
-  return {
-      {"file", committed.file.string()},   {"motor", text(committed.motor_id)},
-      {"robot", text(committed.robot_id)}, {"written_by", text(committed.version)},
-      {"holds", check.found.holds()},      {"excess", json(check.found.excess)},
-      {"lost", json(check.found.lost)},    {"differing_line", check.found.differing_line > 0 ? Json(check.found.differing_line) : Json()}};
+  Json lines = Json::array();
+  for (const derate::HeaderDifference& each : check.found.differing) {
+    lines.push_back({{"line", each.line}, {"committed", each.text}, {"fresh", each.other_text}});
+  }
+  return {{"file", committed.file.string()},
+          {"motor", text(committed.motor_id)},
+          {"robot", text(committed.robot_id)},
+          {"written_by", text(committed.version)},
+          {"holds", check.found.holds()},
+          {"ignored_share", derate::kIgnored_share},
+          {"excess", json(check.found.excess)},
+          {"lost", json(check.found.lost)},
+          {"differing_line", lines.empty() ? Json() : lines.front()["line"]},
+          {"differing_lines", lines}};
 }
 
 }  // namespace heatsoak::present

@@ -5,18 +5,19 @@ namespace {
 
 Measured measure_derating_excess(const Check& check, Computations& computations) {
   const derate::TableComparison found = compared(check, computations);
-  if (found.differing_line > 0) {
+  if (!found.differing.empty()) {
+    const derate::HeaderDifference& first = found.differing.front();
     throw base::Failure(
         base::ExitCode::limit_exceeded,
-        fmt::format("{}:{}: the observer differs from that of a fresh header, so the table has another meaning: \"{}\", fresh "
-                    "\"{}\"; generate the header again with `heatsoak derate`",
-                    check.table.string(), found.differing_line, found.differing_text, found.differing_fresh_text));
+        fmt::format("{}:{}: the observer differs from that of a fresh header in {} places, so the table has another meaning: \"{}\", "
+                    "fresh \"{}\"; `heatsoak derate --check {}` lists them; generate the header again",
+                    check.table.string(), first.line, found.differing.size(), first.text, first.other_text, check.table.string()));
   }
   std::string detail = place_text(found.excess);
   if (found.lost.difference_A > 0.0) {
     detail += fmt::format("{}allows up to {:.3f} A less elsewhere", detail.empty() ? "" : "; ", found.lost.difference_A);
   }
-  return {found.excess.difference_A, 0.0, detail.empty() ? "the same as a fresh table" : detail};
+  return {found.excess.difference_A, 0.0, detail.empty() ? fmt::format("within {} of a fresh table", derate::kIgnored) : detail};
 }
 
 }  // namespace
@@ -28,7 +29,7 @@ ThresholdType derating_excess() {
           .least_distance_value = 1.0,
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
-              "options, over all speeds and temperatures. A C header also fails if it is of another motor or its observer differs from a "
+              "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also fails if it is of another motor or its observer differs from a "
               "fresh one. The default of 400 drawn motors takes up to 3 s per motor; write and check the table with derate = { samples = "
               "\"60\" } for half of that. The limit of --update leaves 0.05 A if the value is 0",
           .example = "at most 0 A",
