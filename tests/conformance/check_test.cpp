@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <regex>
 #include <unistd.h>
 
 #include <set>
@@ -170,6 +172,18 @@ TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {
   EXPECT_THAT(folder_.names(), ElementsAre("robot.check.toml"));
 }
 
+TEST_F(CheckCommand, MarginAboveTheWholeValueIsRefused) {
+  const std::string before = check_with(30.0, 99.0);
+  for (const char* const margin : {"5", "1", "500 %", "101 %"}) {
+    const ProgramRun refused = check(before, {"--update", "--margin", margin});
+    EXPECT_EQ(refused.exit_code, 2) << margin;
+    EXPECT_EQ(content_of(folder_.path() / "robot.check.toml"), before) << margin;
+  }
+  EXPECT_THAT(check(before, {"--update", "--margin", "5"}).err, HasSubstr("5 is 500 %; did you mean 5 %?"));
+  EXPECT_EQ(check(before, {"--update", "--margin", "0.05"}).exit_code, 0);
+  EXPECT_EQ(check(before, {"--update", "--margin", "100 %"}).exit_code, 0);
+}
+
 TEST_F(CheckCommand, UpdateOfAFileThatMayNotBeWrittenChangesNothing) {
   write(folder_.path() / "robot.check.toml", check_with(30.0, 1.0));
   fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
@@ -275,9 +289,31 @@ TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   EXPECT_THAT(run(derate + Words{"--check", "unsafe.csv", "--quiet"}, options).out, testing::StartsWith(reason));
   const ProgramRun holds = run(derate + Words{"--check", "table.csv"}, options);
   EXPECT_EQ(holds.exit_code, 0) << holds.err;
-  EXPECT_THAT(holds.out, HasSubstr("table.csv: still holds"));
+  EXPECT_THAT(holds.out, HasSubstr("table.csv: still holds: no current is above a fresh table"));
   EXPECT_EQ(run(derate + Words{"--check", "missing.csv"}, options).exit_code, 2);
   EXPECT_THAT(folder.names(), ElementsAre("table.csv", "unsafe.csv"));
+}
+
+// A change of the motor's file: the law that changed comes before the constants that follow from it, also with --quiet.
+TEST(DerateCheck, NamesTheLawThatChanged) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const std::string sheet = content_of(kSource / "motor_db/maxon_ecx_flat_32l_48v.toml");
+  write(folder.path() / "motor.toml", sheet);
+  const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "motor.toml", "--samples", "60"};
+  ASSERT_EQ(run(derate + Words{"--out", "guard.h"}, options).exit_code, 0);
+  const std::string changed = std::regex_replace(sheet, std::regex("(\nthermal_resistance_winding_stator = \\{ value = \")[0-9.]+"), "$013.5");
+  ASSERT_NE(changed, sheet);
+  write(folder.path() / "motor.toml", changed);
+  const ProgramRun found = run(derate + Words{"--check", "guard.h", "--json", "-"}, options);
+  EXPECT_EQ(found.exit_code, 1) << found.err;
+  const nlohmann::json lines = found.json().at("check").at("differing_lines");
+  ASSERT_GE(lines.size(), 2U);
+  EXPECT_THAT(lines[0].at("committed").get<std::string>(), HasSubstr("winding_to_stator_W"));
+  EXPECT_EQ(found.json().at("check").at("differing_line"), lines[0].at("line"));
+  EXPECT_THAT(found.err, HasSubstr("Differing lines"));
+  EXPECT_THAT(run(derate + Words{"--check", "guard.h", "--quiet"}, options).out, HasSubstr("winding_to_stator_W"));
 }
 
 // A header with a sensor cannot be compared with one without it, and this is no unsafe table.

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "base/quantity.h"
 #include "base/version.h"
 #include "check/check_job.h"
 #include "check/check_text.h"
@@ -40,6 +43,15 @@ void write_github(const std::vector<check::Outcome>& outcomes, Session& session)
       }
     });
   }
+}
+
+/// Refuses a bare number of 1 or more: it would be 100 % or more, and usually means percent.
+std::string share_problem(const std::string& word) {
+  const std::optional<double> bare = base::parse_number(word);
+  return bare && std::isfinite(*bare) && *bare >= 1.0
+             ? fmt::format("{0} is {1:.6g} %; did you mean {2:.6g} %? Expected a share of at most 100 %, such as 5% or 0.05", word,
+                           100.0 * *bare, *bare)
+             : std::string();
 }
 
 base::ExitCode run(CheckOptions& options, Session& session) {
@@ -92,9 +104,10 @@ Command check_command() {
                 "rewrite the limits in the files to the present values with some room; limits that cannot be evaluated stay unchanged");
             add_quantity(
                 app, "--margin", options->job.margin_share,
-                {"margin", "", base::Range::between(0.0, 10.0),
+                {"margin", "", base::Range::between(0.0, 1.0),
                  "room that --update leaves, as a share of the value, or of the rise over the air for a temperature; 5 % unless given"})
                 ->type_name("SHARE")
+                ->check(share_problem)
                 ->needs(update);
             app.add_option("--threads", options->job.threads, "number of threads, 0 for all cores; the result does not depend on it")
                 ->check(whole_number(1024))
