@@ -13,6 +13,7 @@
 
 #include "base/files.h"
 #include "base/quantity.h"
+#include "base/source_text.h"
 
 namespace heatsoak::firmware {
 namespace {
@@ -217,14 +218,19 @@ CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, cons
   return folder;
 }
 
+std::size_t code_bytes(std::string_view path, std::string_view content) {
+  const bool is_code = path.ends_with(".h") || path.ends_with(".c") || path.ends_with(".cpp");
+  return is_code ? base::without_comments(content).size() : 0;
+}
+
 std::size_t largest_core_bytes(std::size_t table_bytes) {
   constexpr std::size_t kCharactersPerByte = 4;  // a number of four bytes as text, "1234.56789F, "
   std::size_t bytes = kCharactersPerByte * table_bytes;
   for (const embedded::Text& each : embedded::core_templates()) {
-    bytes += each.text.size();
+    bytes += code_bytes(each.path, each.text);
   }
   for (const embedded::Text& each : embedded::core_sources()) {
-    bytes += is_for_firmware(each.path) ? each.text.size() : 0;
+    bytes += is_for_firmware(each.path) ? code_bytes(each.path, each.text) : 0;
   }
   return bytes;
 }

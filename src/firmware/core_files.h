@@ -59,8 +59,11 @@ static_assert(2.0 * kLongestWatched_s <= 84 * 4 / 47e3);
 CoreFolder core_files(const robot::Robot& robot, const motor::Motor& motor, const CoreOptions& options, const derate::Derating& derating,
                       std::string_view version);
 
-/// Returns the size of all texts of which core_files() builds a folder, and of a guard table of `table_bytes` as text. The few texts that
-/// depend on robot and motor do not count.
+/// Returns the size of a C or C++ file without comments and empty lines, so that a longer comment does not count; 0 for another file.
+std::size_t code_bytes(std::string_view path, std::string_view content);
+
+/// Returns code_bytes() of all texts of which core_files() builds a folder, and of a guard table of `table_bytes` as text. The few texts
+/// that depend on robot and motor do not count.
 std::size_t largest_core_bytes(std::size_t table_bytes);
 
 struct GeneratedCore {

@@ -391,7 +391,7 @@ TEST_F(CheckFiles, LimitsThatCannotFailAreRefused) {
   EXPECT_THAT(message("", "lint_problems = \"at most 10000\""), HasSubstr("holds always: the number of values in a complete motor file"));
   EXPECT_EQ(message("", "lint_problems = \"at most 3\""), "nothing was wrong");
   EXPECT_THAT(message("", "core_size = \"at most 900 kbyte\""),
-              HasSubstr("is looser than twice all texts of the drive core with the largest guard table"));
+              HasSubstr("is looser than twice the code of the drive core with the largest guard table"));
   EXPECT_EQ(message("", "core_size = \"at most 410 kbyte\""), "nothing was wrong");
 }
 

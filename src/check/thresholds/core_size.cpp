@@ -15,7 +15,7 @@ Measured measure_core_size(const Check& check, Computations& computations) {
   const firmware::CoreFolder folder = firmware::core_files(*check.robot, *check.motor, core, derating, "heatsoak 0.0.0");
   double size_byte = 0.0;
   for (const firmware::CoreFile& file : folder.files) {
-    size_byte += static_cast<double>(file.content.size());
+    size_byte += static_cast<double>(firmware::code_bytes(file.path, file.content));
   }
   return {size_byte, 0.0, fmt::format("{} files, guard table of {} bytes", folder.files.size(), derating.table.size_bytes())};
 }
@@ -26,13 +26,14 @@ ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
           .range = base::Range::between(0.0, 1e9),
-          .meaning = "size of the drive core that `generate core` writes for robot and motor: all its source files together, not compiled",
-          .example = "at most 400 kbyte",
+          .meaning = "size of the drive core that `generate core` writes for robot and motor: its C and C++ files together without comments and "
+                     "empty lines, not compiled",
+          .example = "at most 300 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},
           .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
             return LoosestLimit{2.0 * static_cast<double>(firmware::largest_core_bytes(check.derate.table.most_bytes)),
-                                "twice all texts of the drive core with the largest guard table"};
+                                "twice the code of the drive core with the largest guard table"};
           },
           .measure = measure_core_size};
 }
