@@ -1,7 +1,7 @@
 /* CRC-32 of bytes: IEEE 802.3, reflected, with all bits inverted before and after. Plain C99: the drive core and the exported C header
    share this text. Without a table, because it runs only at start-up and when temperatures are saved. */
 #ifndef HEATSOAK_CRC_32_H
-#define HEATSOAK_CRC_32_H
+#define HEATSOAK_CRC_32_H 0x858b72dfu /* check sum of this text */
 
 #include <stdint.h>
 
@@ -19,4 +19,6 @@ static inline uint32_t heatsoak_crc_32(const uint8_t *bytes, int32_t count) {
   return ~crc;
 }
 
+#elif HEATSOAK_CRC_32_H != 0x858b72dfu
+#error "generated headers of different heatsoak versions in one program: generate all of them with the same one"
 #endif

@@ -1,7 +1,7 @@
 /* Derating table of a motor and its reader. Plain C99: the drive core and the exported C header share this text. Method: trilinear
    interpolation of the copper heat per ohm at 25 degC, which is linear in both temperatures for the network of a data sheet. */
 #ifndef HEATSOAK_CURRENT_TABLE_H
-#define HEATSOAK_CURRENT_TABLE_H
+#define HEATSOAK_CURRENT_TABLE_H 0x284c36ccu /* check sum of this text */
 
 #include <stdint.h>
 #ifndef __GNUC__
@@ -135,4 +135,6 @@ static inline float heatsoak_allowed_A(const heatsoak_current_table *table, cons
   return heatsoak_current_A(table, row, heatsoak_allowed_A2(table, row, winding_C));
 }
 
+#elif HEATSOAK_CURRENT_TABLE_H != 0x284c36ccu
+#error "generated headers of different heatsoak versions in one program: generate all of them with the same one"
 #endif

@@ -3,7 +3,7 @@
    Method: argument reduction to |r| <= ln(2)/2 and a Taylor polynomial; relative error below 3e-7 (exponential), 2e-6 (power for
    |y*log2(x)| <= 20; it grows with that product). */
 #ifndef HEATSOAK_THERMAL_MATH_H
-#define HEATSOAK_THERMAL_MATH_H
+#define HEATSOAK_THERMAL_MATH_H 0xe38e043du /* check sum of this text */
 
 #include <stdint.h>
 
@@ -82,4 +82,6 @@ static inline float heatsoak_log(float x) {
 /* x to the power of y for x > 0, else 0. */
 static inline float heatsoak_pow(float x, float y) { return x > 0.0f ? heatsoak_exp(y * heatsoak_log(x)) : 0.0f; }
 
+#elif HEATSOAK_THERMAL_MATH_H != 0xe38e043du
+#error "generated headers of different heatsoak versions in one program: generate all of them with the same one"
 #endif

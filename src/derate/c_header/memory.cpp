@@ -151,7 +151,9 @@ static inline void @_cool(@_law law, const float *resting_C, float elapsed_s, fl
   for (step = 0; step < @CAP@_MOST_COOLING_STEPS && left_s > 0.0f; ++step) {
     float step_s;
     /* The time constants may change while the motor cools. */
-    longest_s = (step % 4) == 0 ? @_cooling_step_s(law, &off, state_C) : longest_s;
+    if ((step % 4) == 0) {
+      longest_s = @_cooling_step_s(law, &off, state_C);
+    }
     step_s = left_s < longest_s ? left_s : longest_s;
     @_cool_for(law, &off, step_s, state_C, carry_K, peak_C);
     left_s -= step_s;
@@ -229,7 +231,7 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
   const float least_C = @_is_temperature(board_C) ? board_C : @CAP@_HOTTEST_AMBIENT_C;
   int node;
   bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
-                       @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
+                  @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
   for (node = 0; node < @NODES@; ++node) {
     const float saved_C = @_number(@_unpack(&buffer[4 + 4 * node]));
     const float saved_nominal_C = @_number(@_unpack(&buffer[4 + 4 * (@NODES@ + node)]));

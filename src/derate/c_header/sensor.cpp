@@ -157,11 +157,11 @@ static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
 static inline bool @_is_sensed_started(const @_sensed_state *state) {
   int node;
   bool is_started = state->started == @CAP@_STARTED && @_is_temperature(state->lag_C) &&
-                         @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
-                         @_is_between(0.0f, state->allowed_A, @CAP@_MOST_CURRENT_A) &&
-                         @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
-                         @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
-                         @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
+                    @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
+                    @_is_between(0.0f, state->allowed_A, @CAP@_MOST_CURRENT_A) &&
+                    @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
+                    @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
+                    @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
   for (node = 0; node < @NODES@; ++node) {
     is_started = is_started && @_is_temperature(state->state_C[node]) && @_is_temperature(state->capped_C[node]);
     is_started = is_started && @_is_between(-1.0f, state->carry_K[node], 1.0f);

@@ -362,7 +362,8 @@ std::string write_c_header_q15(const Derating& derating) {
   const auto period_us = static_cast<std::int64_t>(std::ceil(1e6 * derating.options.period_s));
   return c_header::wrapped(
       head(derating, prefix, lines, table) +
-      fmt::format("#ifndef HEATSOAK_{0}_H\n#define HEATSOAK_{0}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n", capital) +
+      fmt::format("#ifndef HEATSOAK_{0}_{1:08X}_H\n#define HEATSOAK_{0}_{1:08X}_H\n\n#include <stdbool.h>\n#include <stdint.h>\n\n",
+                  capital, guard_signature(derating, "q15")) +
       std::string(embedded::integer_table_text().front().text) + "\n" + c_header::shared_text("crc_32.h") + "\n" +
       define("WINDING_LIMIT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.rules.limits.winding_C))) +
       define("HOTTEST_AMBIENT_MC", candidates(derating, observed::ambient).front()) +

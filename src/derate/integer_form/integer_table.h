@@ -1,7 +1,7 @@
 /* The derating table in integers and how it is read: plain C99, because the exported header contains this text. Every rounding is down, so
    that the current is never above that of the table in single precision. */
 #ifndef HEATSOAK_INTEGER_TABLE_H
-#define HEATSOAK_INTEGER_TABLE_H
+#define HEATSOAK_INTEGER_TABLE_H 0x07e6fe11u /* check sum of this text */
 
 #include <stdint.h>
 
@@ -129,4 +129,6 @@ static inline int32_t heatsoak_integer_allowed_mA(const heatsoak_integer_table *
   return (int32_t)current_mA;
 }
 
+#elif HEATSOAK_INTEGER_TABLE_H != 0x07e6fe11u
+#error "generated headers of different heatsoak versions in one program: generate all of them with the same one"
 #endif
