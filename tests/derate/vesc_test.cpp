@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <numbers>
 #include <regex>
+#include <sstream>
 
 #include "derate/export_text.h"
 #include "exported_motor.h"
@@ -46,6 +50,45 @@ TEST(VescExporter, OtherMotorTypesGetNoCurrent) {
 TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
   EXPECT_THAT(exported("vesc"), testing::AllOf(HasSubstr("motor type FOC"), HasSubstr("the controller never limits below it"),
                                                HasSubstr("default of 0.05 A or less"), HasSubstr("foc_temp_comp: off")));
+}
+
+// LispBM's own interpreter is not part of the project. HEATSOAK_LISPBM_REPL names its program `repl`.
+TEST(VescExporter, RealInterpreterComputesTheObserver) {
+  const char* const repl = std::getenv("HEATSOAK_LISPBM_REPL");
+  if (repl == nullptr) {
+    GTEST_SKIP() << "HEATSOAK_LISPBM_REPL is not set";
+  }
+  constexpr int kCycles = 1000;
+  // The controller's functions cannot be redefined, so the script gets its own.
+  std::string script = std::regex_replace(
+      exported("vesc"), std::regex("\\((conf-get|conf-set|get-current|get-rpm|override-temp-motor|secs-since|sleep)\\b"), "(of-test-$1");
+  script = std::regex_replace(script, std::regex("\\(loopwhile t"), fmt::format("(looprange cycle 0 {}", kCycles));
+  const std::filesystem::path stem =
+      std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_lispbm_{}", static_cast<int>(getpid()));
+  std::ofstream(stem.string() + ".lisp") << R"((define of-test-sent 0.0)
+(defun of-test-conf-get (name) (if (eq name 'si-motor-poles) 14 2))
+(defun of-test-conf-set (name value) t)
+(defun of-test-get-current () 2.0)
+(defun of-test-get-rpm () 7000.0)
+(defun of-test-secs-since (time) 0.01)
+(defun of-test-sleep (time) t)
+(defun of-test-override-temp-motor (temperature-C) (setq of-test-sent temperature-C))
+)" << script << "(print (list 'sent of-test-sent))\n";
+  EXPECT_EQ(std::system(fmt::format("'{0}' --terminate --silent -s '{1}.lisp' > '{1}.out'", repl, stem.string()).c_str()), 0);
+  std::stringstream out;
+  out << std::ifstream(stem.string() + ".out").rdbuf();
+  std::smatch sent;
+  const std::string text = out.str();
+  ASSERT_TRUE(std::regex_search(text, sent, std::regex("\\(sent ([0-9.]+)"))) << text;
+  ObserverRun<float> observer(ecx_derating().observer, 0.01F, 155.0F);
+  const auto current_A = static_cast<float>(2.0 * kDcPerIq_ratio);
+  const auto speed_rad_per_s = static_cast<float>(7000.0 * std::numbers::pi / 30.0 / 7.0);
+  for (int i = 0; i < kCycles; ++i) {
+    observer.step(std::array<float, observed::kSignalCount>{current_A, speed_rad_per_s, 40.0F, 0.0F, 40.0F, 0.0F, 0.0F});
+  }
+  EXPECT_NEAR(std::stod(sent[1]), observer.state_C()[0], 0.01);
+  std::filesystem::remove(stem.string() + ".lisp");
+  std::filesystem::remove(stem.string() + ".out");
 }
 
 // The script integrates a pause of its thread in short steps; one Euler step of 24 s would cool the winding to 0 °C.
