@@ -58,7 +58,7 @@ struct TableComparison {
   /// Only for a C header: statements outside of tables and comments that differ from a fresh header, the most telling first. If there is
   /// one, the observer in the firmware is not the observer that the table was checked with.
   std::vector<HeaderDifference> differing;
-  bool is_other_motor = false;       ///< the file names a motor, and it is another one
+  bool is_other_motor = false;  ///< the file names a motor, and it is another one
 
   /// Returns whether the committed table is safe to use.
   [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing.empty(); }
@@ -70,8 +70,8 @@ inline constexpr std::string_view kIgnored = "0.05 % of the largest current";
 
 /// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
 /// axes. This suffices, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores
-/// differences below kIgnored_share of the largest current, which rounding of the file may cause. In the other lines of a header, numbers that agree to 1 in 10⁴
-/// count as equal.
+/// differences below kIgnored_share of the largest current, which rounding of the file may cause. In the other lines of a header, numbers
+/// that agree to 1 in 10⁴ count as equal.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak::derate

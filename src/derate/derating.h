@@ -45,7 +45,7 @@ BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot,
 /// Nominal value of a parameter of an effect.
 struct EffectParameter {
   std::string key;
-  std::string unit;    ///< UDUNITS text; empty for a pure number
+  std::string unit;  ///< UDUNITS text; empty for a pure number
   double value = 0.0;
   std::string choice;  ///< name of the choice if the parameter is one, else empty
 };

@@ -51,11 +51,12 @@ Json rate_lines_json(const Derating& derating) {
     lines.push_back(text.substr(text.find_first_not_of(' ', begin), end - text.find_first_not_of(' ', begin)));
     begin = end + 1;
   }
-  return {{"language",
-           "C with <math.h>, in order; state_C in the order of 'nodes', other inputs as in 'signals'; positive_power(x, y) is pow(x, y) for "
-           "x > 0, else 0"},
-          {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_safety_factor())},
-          {"rate_lines", lines}};
+  return {
+      {"language",
+       "C with <math.h>, in order; state_C in the order of 'nodes', other inputs as in 'signals'; positive_power(x, y) is pow(x, y) for "
+       "x > 0, else 0"},
+      {"heat_reserve_ratio_r", rounded_to_12_digits(derating.observer.heat_safety_factor())},
+      {"rate_lines", lines}};
 }
 
 Json effect_json(const ActingEffect& effect) {
@@ -65,9 +66,9 @@ Json effect_json(const ActingEffect& effect) {
                           {"value", each.choice.empty() ? Json(rounded_to_12_digits(each.value)) : Json(each.choice)},
                           {"unit", each.unit}});
   }
-  return {{"id", effect.name},         {"type", effect.type},
+  return {{"id", effect.name},           {"type", effect.type},
           {"equation", effect.equation}, {"nodes", effect.nodes},
-          {"parameters", parameters},  {"column_at_its_hottest", effect.column.empty() ? Json() : Json(effect.column)}};
+          {"parameters", parameters},    {"column_at_its_hottest", effect.column.empty() ? Json() : Json(effect.column)}};
 }
 
 /// The equations are included, so that the numbers can be used without another file.

@@ -220,7 +220,7 @@ int rank(Statement statement) {
   constexpr std::string_view kLaws[] = {"rate_K_per_s", "change"};
   constexpr std::string_view kLimits[] = {"_LIMIT_", "_AMBIENT_", "_PERIOD_", "_MOST_CURRENT_", "_MOST_SPEED_", "_TORQUE_CONSTANT_"};
   constexpr std::string_view kDerived[] = {"_STRAIGHT_BELOW_", "_RESISTANCE_", "_WINDING_PER_STATOR_", "_LIMP_", "_NO_CURRENT_SPEED_",
-                                           "_REACHABLE_",      "_resting",     "_possible_",           "_table",  "_SENSOR_"};
+                                           "_REACHABLE_",      "_resting",     "_possible_",           "_table", "_SENSOR_"};
   const auto contains_any = [&](std::span<const std::string_view> words, std::size_t tokens) {
     return std::ranges::any_of(statement.first(std::min(tokens, statement.size())), [&](const Token& token) {
       return std::ranges::any_of(words, [&](std::string_view word) { return token.text.find(word) != std::string_view::npos; });
@@ -265,7 +265,7 @@ std::vector<HeaderDifference> differences(std::string_view header, std::string_v
     const auto place_of = [](Statement statement, Statement::iterator token) {
       return token == statement.end() ? statement.back().place : token->place;
     };
-    const std::size_t place = !each.own.empty()            ? place_of(each.own, one)
+    const std::size_t place = !each.own.empty()          ? place_of(each.own, one)
                               : each.before < own.size() ? own[each.before].front().place
                                                          : header.size() - 1;
     const auto lines = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(place), '\n');

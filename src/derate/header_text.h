@@ -26,8 +26,8 @@ struct HeaderDifference {
 };
 
 /// Returns the statements in which two headers differ: physical laws and limits first, then the others, and last the constants that are
-/// derived from them; each group in the order of the header. Ignores comments, line breaks, derating tables, versions, signatures and include
-/// guards. Numbers that agree to 1 in 10⁴ are equal.
+/// derived from them; each group in the order of the header. Ignores comments, line breaks, derating tables, versions, signatures and
+/// include guards. Numbers that agree to 1 in 10⁴ are equal.
 std::vector<HeaderDifference> differences(std::string_view header, std::string_view other);
 
 }  // namespace heatsoak::derate

@@ -9,11 +9,11 @@ namespace heatsoak::derate {
 
 /// A continuous use, in which the motor turns without a load.
 struct OwnFriction {
-  double needed_A = 0.0;          ///< no-load current: friction and iron loss per torque constant, at every speed above 0
-  double speed_rad_per_s = 0.0;   ///< no-load speed on a full battery, or the fastest continuous use if that is slower
-  double lasting_A = 0.0;         ///< lasting current at that speed, in the worst hot case
-  double at_standstill_A = 0.0;   ///< lasting current at standstill, in the worst hot case
-  double held_rad_per_s = 0.0;    ///< highest speed up to which the lasting current is at least `needed_A`; 0 if there is none
+  double needed_A = 0.0;         ///< no-load current: friction and iron loss per torque constant, at every speed above 0
+  double speed_rad_per_s = 0.0;  ///< no-load speed on a full battery, or the fastest continuous use if that is slower
+  double lasting_A = 0.0;        ///< lasting current at that speed, in the worst hot case
+  double at_standstill_A = 0.0;  ///< lasting current at standstill, in the worst hot case
+  double held_rad_per_s = 0.0;   ///< highest speed up to which the lasting current is at least `needed_A`; 0 if there is none
 
   [[nodiscard]] bool holds() const { return lasting_A >= needed_A; }
 };

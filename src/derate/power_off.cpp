@@ -164,9 +164,8 @@ std::vector<double> hottest_permitted_C(const Derating& derating) {
     };
     if (const auto steady = thermal::steady_state(rates, std::vector<double>(nodes, derating.rules.hottest_ambient_C))) {
       hottest_C.resize(nodes, derating.rules.hottest_ambient_C);
-      std::ranges::transform(hottest_C, steady->temperature_C, hottest_C.begin(), [&](double a, double b) {
-        return std::min(std::max(a, b), derating.rules.limits.winding_C);
-      });
+      std::ranges::transform(hottest_C, steady->temperature_C, hottest_C.begin(),
+                             [&](double a, double b) { return std::min(std::max(a, b), derating.rules.limits.winding_C); });
     }
   }
   return hottest_C.empty() ? std::vector<double>(nodes, derating.rules.limits.winding_C) : hottest_C;

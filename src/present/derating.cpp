@@ -173,8 +173,7 @@ std::string broken_words(const derate::TableCheck& check) {
                               ? fmt::format("it allows up to {:.3f} A more than a fresh table", found.excess.difference_A)
                               : fmt::format("its observer differs from a fresh one in {} {}, the first in line {}: \"{}\", fresh \"{}\"",
                                             found.differing.size(), found.differing.size() == 1 ? "place" : "places",
-                                            found.differing.front().line, found.differing.front().text,
-                                            found.differing.front().other_text);
+                                            found.differing.front().line, found.differing.front().text, found.differing.front().other_text);
   return fmt::format("no longer holds: {}; write it again with --out", why);
 }
 
@@ -229,9 +228,9 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
 
 void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check) {
   const derate::TableComparison& found = check.found;
-  document.headline.insert(document.headline.begin(),
-                           {fmt::format("{}: {}", check.committed.file.string(), check.found.holds() ? holding_words() : broken_words(check)),
-                            check.found.holds() ? Tone::good : Tone::bad});
+  document.headline.insert(document.headline.begin(), {fmt::format("{}: {}", check.committed.file.string(),
+                                                                   check.found.holds() ? holding_words() : broken_words(check)),
+                                                       check.found.holds() ? Tone::good : Tone::bad});
   if (found.is_other_motor) {
     document.add_note(Severity::warning, fmt::format("Unsafe: the table is for another motor, {}; expected a table for {}.",
                                                      check.committed.motor_id, derating.motor_id));

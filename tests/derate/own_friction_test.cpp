@@ -106,8 +106,8 @@ std::string refusal_of(const motor::Motor& motor, const robot::Robot& robot) {
 }
 
 TEST(OwnFriction, MotorWithMuchFrictionIsRefused) {
-  const motor::Motor rough = ecx_32_where("(no_load_current = \\{ value = \")0.25 A(.*range = \\[\")0.15 A\", \"0.45 A",
-                                          "$012.6 A$022.2 A\", \"3.3 A");
+  const motor::Motor rough =
+      ecx_32_where("(no_load_current = \\{ value = \")0.25 A(.*range = \\[\")0.15 A\", \"0.45 A", "$012.6 A$022.2 A\", \"3.3 A");
   EXPECT_THAT(refusal_of(rough, twente()), HasSubstr("its no-load current of 2.60 A"));
 }
 

@@ -26,8 +26,9 @@ ThresholdType core_size() {
   return {.name = {},
           .unit = "byte",
           .range = base::Range::between(0.0, 1e9),
-          .meaning = "size of the drive core that `generate core` writes for robot and motor: its C and C++ files together without comments and "
-                     "empty lines, not compiled",
+          .meaning =
+              "size of the drive core that `generate core` writes for robot and motor: its C and C++ files together without comments and "
+              "empty lines, not compiled",
           .example = "at most 300 kbyte",
           .needs = {Setting::robot, Setting::motor},
           .takes = {Setting::conditions, Setting::derate},

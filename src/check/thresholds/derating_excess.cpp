@@ -29,7 +29,8 @@ ThresholdType derating_excess() {
           .least_distance_value = 1.0,
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
-              "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also fails if it is of another motor or its observer differs from a "
+              "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also "
+              "fails if it is of another motor or its observer differs from a "
               "fresh one. The default of 400 drawn motors takes up to 3 s per motor; write and check the table with derate = { samples = "
               "\"60\" } for half of that. The limit of --update leaves 0.05 A if the value is 0",
           .example = "at most 0 A",
