@@ -70,6 +70,7 @@ enum class LintWords {
   nominal_below_empty,
   empty_above_full,
   voltage_above_small_robots,
+  mass_large,
   voltage_limit_above_full,
   gear_ratio_small,
   gear_ratio_large,

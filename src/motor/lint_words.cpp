@@ -132,6 +132,9 @@ constexpr std::array kSentences = std::to_array<Sentence>({
     {LintWords::empty_above_full, "{:.4g} V is not less than the full battery's {:.4g} V"},
     {LintWords::voltage_above_small_robots,
      "{:.4g} V is more than the battery of a small robot has; expected at most {:.0f} V. Six LiPo cells have 22.2 V"},
+    {LintWords::mass_large,
+     "{:.3g} kg are {:.0f} kg/m3 in the volume of a robot with these wheels ({} diameter); expected at most {:.0f} kg/m3, which is {:.2g} "
+     "kg; check the unit"},
     {LintWords::voltage_limit_above_full, "{:.4g} V is more than the full battery's {:.4g} V; expected at most that; check the unit"},
     {LintWords::gear_ratio_small,
      "{:.4g} motor turns per wheel turn; expected at least {}: a motor that turns 3.6 times as fast as the wheel has \"3.6\""},

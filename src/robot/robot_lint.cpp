@@ -109,6 +109,23 @@ void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) 
   }
 }
 
+/// Compares the mean density of the cylinder around the robot with that of known robots, which have 500 to 900 kg/m3.
+void check_mass(const Robot& robot, std::vector<motor::LintFinding>& findings) {
+  // A robot of the Small Size League has at most 180 mm diameter and 150 mm height; its wheels touch the ground at 80 mm.
+  constexpr double kRadius_ratio = 90.0 / 80.0;
+  constexpr double kHeight_ratio = 150.0 / 180.0;
+  // Batteries and motors have 2000 to 8000 kg/m3, but fill less than a third of a robot.
+  constexpr double kMost_kg_per_m3 = 1500.0;
+  const double diameter_m = 2.0 * kRadius_ratio * robot.wheels.contact_radius_m;
+  const double volume_m3 = 0.25 * std::numbers::pi * diameter_m * diameter_m * kHeight_ratio * diameter_m;
+  if (robot.mass_kg > kMost_kg_per_m3 * volume_m3) {
+    findings.push_back(finding(
+        robot, motor::LintFinding::Level::warning, "mass", "mass",
+        LintClause{LintWords::mass_large,
+                   {robot.mass_kg, robot.mass_kg / volume_m3, in_mm(diameter_m), kMost_kg_per_m3, kMost_kg_per_m3 * volume_m3}}));
+  }
+}
+
 /// A disc with the contact radius has 0.5 of mass times radius squared, a ring of twice the radius has 4.
 void check_inertia(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   constexpr double kLeast = 0.15;
@@ -180,6 +197,7 @@ std::vector<motor::LintFinding> implausible_values(const Robot& robot) {
   check_battery(robot, findings);
   check_voltage(robot, findings);
   check_drive(robot, findings);
+  check_mass(robot, findings);
   check_inertia(robot, findings);
   check_motion(robot, findings);
   return findings;

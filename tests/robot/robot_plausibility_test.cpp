@@ -41,6 +41,15 @@ TEST(RobotPlausibility, diameter_in_place_of_the_radius_makes_wheels_overlap) {
   EXPECT_THAT(findings_with("\nradius = \"28 mm\"", "\nradius = \"62 mm\""), Contains("wheels error"));
 }
 
+// Robots of the Small Size League weigh 2 to 3.5 kg. A heavy one is a warning and no error: nothing contradicts it.
+TEST(RobotPlausibility, a_mass_that_its_volume_cannot_have_is_a_warning) {
+  EXPECT_THAT(findings_with("\nmass = \"2.632 kg\"", "\nmass = \"9 kg\""), Contains("mass warning"));
+  for (const char* mass : {"2 kg", "3.5 kg", "4.5 kg"}) {
+    EXPECT_THAT(findings_with("\nmass = \"2.632 kg\"", "\nmass = \"" + std::string(mass) + "\""), testing::Not(Contains("mass warning")))
+        << mass;
+  }
+}
+
 // Not their radius, which is right, but their angles are wrong.
 TEST(RobotPlausibility, two_wheels_at_one_angle_are_named) {
   EXPECT_THAT(findings_with("axis_angles = \\[\"-30 deg\", \"30 deg\"", "axis_angles = [\"30 deg\", \"30 deg\""), Contains("axes error"));
