@@ -28,6 +28,8 @@ struct Column {
   std::size_t least_width = 0;  ///< a narrower terminal drops the column, whatever its priority
   bool is_prose = false;        ///< long text, broken into lines; only the last column may be prose
   std::string meaning = {};     ///< explanation, shown as a note where the column is shown; may be empty
+  /// A terminal may shorten the cells, as long as all stay different, to show a column of priority 1.
+  bool may_shorten = false;
 };
 
 /// Each row has one cell for each column. If no column has a name, no head is shown.
@@ -49,6 +51,7 @@ enum class Severity {
   background,  ///< explains how the answer was made
   note,        ///< limits the accuracy or scope of the answer
   warning,     ///< the answer may be wrong or unsafe to rely on
+  scope,       ///< states what the answer is for and which command gives the other one; always shown
 };
 
 /// One or two sentences; the first states the consequence.
@@ -66,7 +69,6 @@ struct Document {
   std::vector<Listing> listings = {};      ///< shown last
   std::vector<report::Chart> charts = {};  ///< only HTML contains them
 
-  /// Adds a note unless the same one exists already.
   void add_note(Severity severity, std::string_view words);
   /// Adds the name of a written file; ignores an empty name.
   void add_file(std::string_view name);

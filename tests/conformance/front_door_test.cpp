@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "program_run.h"
@@ -252,10 +253,19 @@ TEST_F(FrontDoor, output_is_as_wide_as_columns_says) {
 
 TEST_F(FrontDoor, all_motors_fit_eighty_columns) {
   std::istringstream lines(run_here("heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --samples 0").out);
+  std::set<std::string> names;
+  std::size_t rows = 0;
   for (std::string line; std::getline(lines, line);) {
     EXPECT_LE(std::ranges::count_if(line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }), 80) << line;
-    EXPECT_THAT(line, Not(HasSubstr("…  "))) << "no name is cut";
+    EXPECT_THAT(line, Not(HasSubstr("…  "))) << "a name is shortened in its middle";
+    if (std::smatch row; std::regex_search(line, row, std::regex("^ *[0-9]+  (\\S+)"))) {
+      ++rows;
+      names.insert(row[1]);
+      EXPECT_THAT(line, testing::ContainsRegex("[▁▂▃▄▅▆▇█]$")) << "the curve of the winding";
+    }
   }
+  EXPECT_GT(rows, 20U);
+  EXPECT_EQ(names.size(), rows);
 }
 
 TEST_F(FrontDoor, a_fixed_load_says_first_that_the_robot_does_not_matter) {

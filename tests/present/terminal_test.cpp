@@ -54,6 +54,28 @@ TEST(Terminal, columns_leave_by_priority_and_come_back_in_order) {
   EXPECT_THAT(narrow, HasSubstr("maxon_ec45_flat_70w_30v_402685"));
 }
 
+// Long names give way to a column of priority 1, but never become equal, and no line becomes too wide.
+TEST(Terminal, names_are_shortened_for_a_column_of_priority_1) {
+  Document document;
+  document.tables = {{.columns = {{.name = "motor", .alignment = Alignment::left, .may_shorten = true},
+                                  {"margin", "K", 0},
+                                  {"winding", "", 1, Alignment::left},
+                                  {"data", "", 2, Alignment::left}},
+                      .rows = {{{"maxon_ec45_flat_50w_24v_251601"}, {"+127"}, {"▁▁▁▁▁▁▁▁"}, {"datasheet"}},
+                               {{"maxon_ec45_flat_50w_24v_339281"}, {"+127"}, {"▁▁▁▁▁▁▁▁"}, {"datasheet"}}}}};
+  EXPECT_THAT(terminal_text(document, {.width = 60}), HasSubstr("maxon_ec45_flat_50w_24v_251601      +127  ▁▁▁▁▁▁▁▁\n"));
+  const std::string shortened = terminal_text(document, {.width = 42});
+  EXPECT_THAT(shortened, HasSubstr("…"));
+  EXPECT_THAT(shortened, HasSubstr("251601      +127  ▁▁▁▁▁▁▁▁\n"));
+  for (std::size_t width = 20; width < 80; ++width) {
+    const std::vector<std::string> lines = lines_of(terminal_text(document, {.width = width}));
+    EXPECT_NE(lines.at(1), lines.at(2)) << width;
+    for (const std::string& line : lines) {
+      EXPECT_LE(width_of(line), width) << line;
+    }
+  }
+}
+
 Document with_prose() {
   Document document;
   document.tables = {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "present/renderer.h"
 #include "present/wrap.h"
@@ -52,28 +53,6 @@ std::vector<std::size_t> widths_of(const Table& table) {
   return widths;
 }
 
-/// Returns the columns that fit, in the order of the table; those of priority 0 always. Columns are dropped strictly by priority.
-std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std::size_t>& widths, std::size_t width) {
-  std::vector<std::size_t> order(table.columns.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return table.columns[i].priority; });
-  std::vector<std::size_t> shown;
-  std::size_t used = 0;
-  for (const std::size_t i : order) {
-    if (table.columns[i].least_width > width) {
-      continue;
-    }
-    const std::size_t more = widths[i] + (used > 0 ? kGap : 0);
-    if (table.columns[i].priority > 0 && used + more > width) {
-      break;
-    }
-    used += more;
-    shown.push_back(i);
-  }
-  std::ranges::sort(shown);
-  return shown;
-}
-
 /// Pads a cell to its width. A longer text is shortened in the middle, because similar names often differ at their ends.
 std::string padded(const std::string& text, std::size_t width, Alignment alignment) {
   const std::size_t own = width_of(text);
@@ -82,6 +61,52 @@ std::string padded(const std::string& text, std::size_t width, Alignment alignme
   }
   const std::string blanks(width - own, ' ');
   return alignment == Alignment::left ? text + blanks : blanks + text;
+}
+
+/// Returns by how many characters the cells of a column may be shortened so that all stay different.
+std::size_t spare_width(const Table& table, std::size_t column, std::size_t width) {
+  constexpr std::size_t kLeastShortened = 16;
+  const auto are_distinct = [&](std::size_t shortened) {
+    std::set<std::string> whole;
+    std::set<std::string> short_ones;
+    for (const std::vector<Text>& row : table.rows) {
+      whole.insert(row[column].words);
+      short_ones.insert(padded(row[column].words, shortened, Alignment::left));
+    }
+    return whole.size() == short_ones.size();
+  };
+  std::size_t least = width;
+  while (least > kLeastShortened && are_distinct(least - 1)) {
+    --least;
+  }
+  return width - least;
+}
+
+/// Returns the columns that fit, in the order of the table; those of priority 0 always. Columns are dropped strictly by priority. A column
+/// that may be shortened gives way to those of priority 1.
+std::vector<std::size_t> shown_columns(const Table& table, const std::vector<std::size_t>& widths, std::size_t width) {
+  std::vector<std::size_t> order(table.columns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return table.columns[i].priority; });
+  std::vector<std::size_t> shown;
+  std::size_t used = 0;
+  std::size_t spare = 0;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    spare += table.columns[i].may_shorten ? spare_width(table, i, widths[i]) : 0;
+  }
+  for (const std::size_t i : order) {
+    if (table.columns[i].least_width > width) {
+      continue;
+    }
+    const std::size_t more = widths[i] + (used > 0 ? kGap : 0);
+    if (table.columns[i].priority > 0 && used + more > width + (table.columns[i].priority == 1 ? spare : 0)) {
+      break;
+    }
+    used += more;
+    shown.push_back(i);
+  }
+  std::ranges::sort(shown);
+  return shown;
 }
 
 std::string without_trailing_blanks(std::string line) { return line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; }
