@@ -1,12 +1,57 @@
 #include "base/job_progress.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <numeric>
 #include <utility>
 
 namespace heatsoak::base {
+namespace {
+
+/// A possible remaining time.
+struct Outcome {
+  double remaining_s = 0.0;
+  double probability = 0.0;
+};
+
+double probability_of(std::vector<Outcome>::const_iterator from, std::vector<Outcome>::const_iterator to) {
+  return std::accumulate(from, to, 0.0, [](double sum, const Outcome& each) { return sum + each.probability; });
+}
+
+/// Sets the remaining time to the centre of the range, from a time to its fourfold, that most probably contains the true one. It becomes a
+/// lower bound if longer times are not improbable, or if no range is probable enough.
+void set_remaining(JobEstimate& estimate, const std::vector<Outcome>& ascending) {
+  constexpr double kWidth_ratio = 4.0;
+  constexpr double kProbable = 0.7;
+  constexpr double kImprobable = 0.1;
+  constexpr double kShown_s = 1.0;  // shorter times are shown as 1 s
+  double best = -1.0;
+  for (auto low = ascending.begin(); low != ascending.end(); ++low) {
+    const double most_s = kWidth_ratio * std::max(kShown_s, low->remaining_s);
+    const auto end = std::find_if(low, ascending.end(), [most_s](const Outcome& each) { return each.remaining_s > most_s; });
+    if (const double within = probability_of(low, end); within > best) {
+      best = within;
+      const double high_s = std::prev(end)->remaining_s;
+      const bool is_long_possible = probability_of(end, ascending.end()) > kImprobable;
+      estimate.is_least = is_long_possible && probability_of(ascending.begin(), low) <= kImprobable;
+      estimate.remaining_s = estimate.is_least || high_s <= kShown_s ? low->remaining_s
+                                                                     : std::sqrt(std::max(kShown_s, low->remaining_s) * high_s);
+    }
+  }
+  if (best < kProbable) {
+    const auto sure = std::find_if(ascending.begin(), ascending.end(), [&](const Outcome& each) {
+      return probability_of(ascending.begin(), ascending.begin() + (&each - ascending.data()) + 1) > kImprobable;
+    });
+    estimate.remaining_s = sure->remaining_s;
+    estimate.is_least = true;
+  }
+}
+
+}  // namespace
 
 struct JobProgress::State {
   /// Measured work of one kind.
@@ -42,30 +87,51 @@ struct JobProgress::State {
     return all;
   }
 
-  /// Returns the expected remaining time at the measured speeds.
-  [[nodiscard]] double remaining_s(double time_s) const {
-    const std::map<std::string, Measured> kinds = measured();
-    Measured job;
-    for (const auto& [what, kind] : kinds) {
-      job.elapsed_s += kind.elapsed_s;
-      job.work_s += kind.work_s;
+  /// Returns the duration of a phase at the measured speeds.
+  class Speeds {
+   public:
+    Speeds(std::map<std::string, Measured> kinds, double later_s) : kinds_(std::move(kinds)) {
+      Measured job;
+      for (const auto& [what, kind] : kinds_) {
+        job.elapsed_s += kind.elapsed_s;
+        job.work_s += kind.work_s;
+      }
+      job_ratio_ = ratio(job, 1.0, kAssumed_share * (job.work_s + later_s));
     }
-    const double all_s = std::accumulate(later.begin(), later.end(), job.work_s + (1.0 - share) * present->work_s,
-                                         [](double sum_s, const JobPhase& each) { return sum_s + each.work_s; });
-    // The first reports of a job, and of a kind, do not decide alone.
-    constexpr double kAssumed_share = 0.02;
-    const double job_ratio = ratio(job, 1.0, kAssumed_share * all_s);
-    const auto ratio_of = [&](const JobPhase& phase) {
-      const auto same = kinds.find(phase.what);
-      return same == kinds.end() ? job_ratio : ratio(same->second, job_ratio, kAssumed_share * phase.work_s);
-    };
+    [[nodiscard]] double duration_s(const JobPhase& phase) const {
+      const auto same = kinds_.find(phase.what);
+      return phase.work_s * (same == kinds_.end() ? job_ratio_ : ratio(same->second, job_ratio_, kAssumed_share * phase.work_s));
+    }
+
+   private:
+    static constexpr double kAssumed_share = 0.02;  ///< the first reports of a job, and of a kind, do not decide alone
+    std::map<std::string, Measured> kinds_;
+    double job_ratio_ = 1.0;
+  };
+
+  /// Returns the possible remaining times at the measured speeds, in ascending order.
+  [[nodiscard]] std::vector<Outcome> outcomes(double time_s) const {
+    const double later_s = std::accumulate(later.begin(), later.end(), (1.0 - share) * present->work_s, [](double sum_s, const auto& each) {
+      return sum_s + each.probability * each.work_s;
+    });
+    const Speeds speeds(measured(), later_s);
     // Without reports a phase proceeds at its speed. One that takes longer than expected is assumed to take another fifth of that time.
     constexpr double kOverrun_ratio = 0.2;
     const double silent_s = time_s - report_s;
-    const double rest_s = (1.0 - share) * present->work_s * ratio_of(*present);
-    const double own_s = share < 1.0 ? std::max(rest_s - silent_s, kOverrun_ratio * silent_s) : 0.0;
-    return std::accumulate(later.begin(), later.end(), own_s,
-                           [&](double sum_s, const JobPhase& each) { return sum_s + each.work_s * ratio_of(each); });
+    const double rest_s = (1.0 - share) * speeds.duration_s(*present);
+    std::vector<JobPhase> phases = later;
+    std::ranges::stable_sort(phases, std::ranges::greater(), &JobPhase::probability);
+    std::vector<Outcome> all;
+    Outcome next{share < 1.0 ? std::max(rest_s - silent_s, kOverrun_ratio * silent_s) : 0.0, 1.0};
+    for (const JobPhase& each : phases) {
+      if (each.probability < next.probability) {
+        all.push_back({next.remaining_s, next.probability - each.probability});
+        next.probability = each.probability;
+      }
+      next.remaining_s += speeds.duration_s(each);
+    }
+    all.push_back(next);
+    return all;
   }
 
   void end_present(double time_s) {
@@ -139,9 +205,12 @@ JobEstimate JobProgress::estimate() const {
     return found;
   }
   found.what = state.present->what;
-  found.remaining_s = state.remaining_s(time_s);
-  found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + *found.remaining_s) : 0.0;
-  found.is_least = state.is_open || state.present->work_s == 0.0;
+  const std::vector<Outcome> outcomes = state.outcomes(time_s);
+  set_remaining(found, outcomes);
+  const double mean_s = std::accumulate(outcomes.begin(), outcomes.end(), 0.0,
+                                        [](double sum_s, const Outcome& each) { return sum_s + each.probability * each.remaining_s; });
+  found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + mean_s) : 0.0;
+  found.is_least = found.is_least || state.is_open || state.present->work_s == 0.0;
   return found;
 }
 

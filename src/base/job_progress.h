@@ -13,16 +13,17 @@ namespace heatsoak::base {
 
 /// Part of a job.
 struct JobPhase {
-  std::string what;     ///< name for the user; phases of the same name are work of the same kind
-  double work_s = 0.0;  ///< expected duration in s on a usual computer, weighted with its probability if the phase may be left out
+  std::string what;          ///< name for the user; phases of the same name are work of the same kind
+  double work_s = 0.0;       ///< expected duration in s on a usual computer
+  double probability = 1.0;  ///< probability that the phase takes place
 };
 
 struct JobEstimate {
   std::string what;                        ///< name of the present phase; empty before the first one
   double elapsed_s = 0.0;                  ///< since the job began
-  double done_share = 0.0;                 ///< elapsed time divided by the expected total time, 0 to 1
+  double done_share = 0.0;                 ///< elapsed time divided by the mean total time, 0 to 1
   std::optional<double> remaining_s = {};  ///< for the whole job; empty before the first phase
-  bool is_least = false;                   ///< the job may have phases whose length is not known yet
+  bool is_least = false;                   ///< remaining_s is a lower bound: more phases may follow that it does not contain
 };
 
 /// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
@@ -30,6 +31,10 @@ struct JobEstimate {
 ///
 /// Once work has been measured, only the ratios of the expected durations count. Each kind of phase is scaled by its own measured speed; a
 /// kind that has not begun is scaled by the mean speed of the job.
+///
+/// If phases may be left out, the remaining time has several values, each with a probability. The estimate is the value that is most
+/// probably right within a factor of two; if no value is probable enough, it is a lower bound. A phase is taken to follow only together
+/// with all phases that are more probable.
 class JobProgress {
  public:
   using Now = std::function<double()>;  ///< returns a time in s that never decreases

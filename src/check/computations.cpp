@@ -36,7 +36,7 @@ std::string key_of_load(const Check& check) {
 // Usual durations in s on two cores.
 
 double derating_s(const Check& check) {
-  constexpr double kMotor_s = 0.015;
+  constexpr double kMotor_s = 0.005;
   return kMotor_s * check.derate.guarantee.samples;
 }
 
@@ -67,19 +67,40 @@ bool needs_drive(const ThresholdType& type) {
   return has(type.needs, Setting::duty) && has(type.takes, Setting::derate);
 }
 
-double Computations::usual_s(const Check& check) {
-  constexpr double kOther_s = 0.1;
-  constexpr double kLog_s = 0.5;
-  double all_s = kOther_s + kLog_s * static_cast<double>(check.logs.size());
-  if (needs(check, Setting::samples)) {
-    all_s += select::evaluation_work_s(1.0, check.samples) * static_cast<double>(1 + check.against.size());
+std::vector<UsualWork> Computations::usual_work(const Check& check) {
+  constexpr double kOther_s = 0.05;
+  constexpr double kLog_s = 0.2;
+  using Kind = UsualWork::Kind;
+  std::vector<UsualWork> all{{Kind::other, fmt::format("check|{}", check.name), kOther_s + kLog_s * static_cast<double>(check.logs.size())}};
+  if (needs(check, Setting::samples) && check.robot && check.duty) {
+    const int games = select::draw_count(*check.duty, check.samples);
+    if (games > 0) {
+      all.push_back({Kind::games, fmt::format("games|{}|{}", key_of_load(check), games), select::kDraw_s * games});
+    }
+    std::vector<const motor::Motor*> motors;
+    std::ranges::transform(check.against, std::back_inserter(motors), [](const motor::Motor& each) { return &each; });
+    if (check.motor) {
+      motors.push_back(&*check.motor);
+    }
+    for (const motor::Motor* each : motors) {
+      all.push_back({Kind::other, fmt::format("evaluation|{}|{}|{}", key_of_load(check), key_of(*each), check.samples),
+                     select::evaluation_work_s(1.0, check.samples)});
+    }
   }
-  if (needs(check, Setting::derate)) {
-    all_s += derating_s(check);
-    const bool is_driven = std::ranges::any_of(check.limits, [](const Limit& limit) { return needs_drive(*limit.type); });
-    all_s += is_driven ? simulate::kDrive_s + simulate::kPlayedGame_s : 0.0;
+  const auto drives = [](const Limit& limit) { return needs_drive(*limit.type); };
+  if (needs(check, Setting::derate) && check.robot && check.motor) {
+    if (!std::ranges::all_of(check.limits, drives)) {
+      all.push_back({Kind::other,
+                     fmt::format("derating|{}|{}|{}", check.robot->file.string(), key_of(*check.motor),
+                                 derate::options_text(check.derate, 0.0)),
+                     derating_s(check)});
+    }
+    if (check.duty && std::ranges::any_of(check.limits, drives)) {
+      all.push_back({Kind::drive, fmt::format("drive|{}|{}", key_of_load(check), key_of(*check.motor)),
+                     derating_s(check) + simulate::kDrive_s + simulate::kPlayedGame_s});
+    }
   }
-  return all_s;
+  return all;
 }
 
 int Computations::independent_draws(const Check& check) {

@@ -65,6 +65,14 @@ struct GuardedDrive {
   double duration_s = 0.0;
 };
 
+/// A result that limits need. Checks with the same key share it.
+struct UsualWork {
+  enum class Kind { games, drive, other };
+  Kind kind = Kind::other;
+  std::string key;
+  double usual_s = 0.0;
+};
+
 /// Returns whether the threshold needs Computations::guarded_drive().
 bool needs_drive(const ThresholdType& type);
 
@@ -81,8 +89,8 @@ class Computations {
   /// for one of them, which plays them alone. A failure is kept for the threshold that needs the games.
   void play_games(const Check& check, const base::Progress& progress = {});
 
-  /// Returns the usual duration in s on two cores of what the limits of a check need, without the drawn games; for progress.
-  [[nodiscard]] static double usual_s(const Check& check);
+  /// Returns the usual durations on two cores of what the limits of a check need; for progress.
+  [[nodiscard]] static std::vector<UsualWork> usual_work(const Check& check);
 
   /// Returns the evaluation of `motor` alone on the check's robot and duty. `heatsoak evaluate` gives the same numbers, whatever motors it
   /// compares.

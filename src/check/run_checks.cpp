@@ -8,6 +8,9 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <numeric>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "base/parallel.h"
@@ -92,18 +95,61 @@ void evaluate_one(Outcome& outcome, Computations& computations, const CommandAns
 }
 
 const std::string kPlaying = "playing games";
+const std::string kDriving = "driving matches";
 const std::string kChecking = "checking";
+
+/// Expected work of a file's checks on two cores. Results that several checks share count once, for the first of them.
+class ExpectedWork {
+ public:
+  std::map<const Check*, double> games_s;   ///< games of the first check that needs them
+  double drive_s = 0.0;                     ///< on one core
+  std::map<const Check*, double> others_s;  ///< the rest of each check
+
+  explicit ExpectedWork(const CheckFile& file) {
+    std::set<std::string> known;
+    for (const Check& check : file.checks) {
+      double& other_s = others_s[&check];
+      for (const UsualWork& each : Computations::usual_work(check)) {
+        if (known.insert(each.key).second) {
+          (each.kind == UsualWork::Kind::games ? games_s[&check] : each.kind == UsualWork::Kind::drive ? drive_s : other_s) += each.usual_s;
+        }
+      }
+    }
+  }
+
+  /// The games leave one core to a driven match. Returns the part of its duration that remains after them.
+  [[nodiscard]] double drive_after_games_s() const { return std::max(0.0, drive_s - 2.0 * sum_s(games_s)); }
+
+  /// Returns the phases of run_checks(). A drive beside the games delays them.
+  [[nodiscard]] std::vector<base::JobPhase> phases() const {
+    std::vector<base::JobPhase> all;
+    const double all_games_s = sum_s(games_s);
+    for (const auto& [check, work_s] : games_s) {
+      all.push_back({kPlaying, work_s * (1.0 + std::min(1.0, 0.5 * drive_s / all_games_s))});
+    }
+    if (drive_after_games_s() > 0.0) {
+      all.push_back({kDriving, drive_after_games_s()});
+    }
+    all.push_back({kChecking, sum_s(others_s)});
+    return all;
+  }
+
+ private:
+  static double sum_s(const std::map<const Check*, double>& works_s) {
+    return std::accumulate(works_s.begin(), works_s.end(), 0.0, [](double sum, const auto& each) { return sum + each.second; });
+  }
+};
 
 /// Finished work of the checks, which run at the same time. A check counts for its usual duration, whatever it reports.
 class CheckedWork {
  public:
-  explicit CheckedWork(const CheckFile& file) {
-    for (const Check& check : file.checks) {
-      works_[&check].all_s = Computations::usual_s(check);
+  explicit CheckedWork(const ExpectedWork& expected) {
+    for (const auto& [check, work_s] : expected.others_s) {
+      works_[check].all_s = work_s;
     }
   }
 
-  /// Takes the progress of the phase; work that was done before counts.
+  /// Takes the progress of the phase.
   void begin(base::Progress progress) {
     const std::lock_guard lock(mutex_);
     progress_ = std::move(progress);
@@ -111,6 +157,9 @@ class CheckedWork {
 
   void add(const Check& check, double work_s) {
     const std::lock_guard lock(mutex_);
+    if (!progress_) {
+      return;  // work of an earlier phase
+    }
     Work& work = works_.at(&check);
     work.done_s = std::min(work.all_s, work.done_s + work_s);
     report();
@@ -125,15 +174,13 @@ class CheckedWork {
   };
 
   void report() const {
-    if (progress_) {
-      Work sum;
-      for (const auto& [check, work] : works_) {
-        sum.all_s += work.all_s;
-        sum.done_s += work.done_s;
-      }
-      const auto in_ms = [](double time_s) { return static_cast<std::size_t>(1e3 * time_s); };
-      progress_(in_ms(sum.done_s), in_ms(sum.all_s));
+    Work sum;
+    for (const auto& [check, work] : works_) {
+      sum.all_s += work.all_s;
+      sum.done_s += work.done_s;
     }
+    const auto in_ms = [](double time_s) { return static_cast<std::size_t>(1e3 * time_s); };
+    progress_(in_ms(sum.done_s), in_ms(sum.all_s));
   }
 
   std::mutex mutex_;
@@ -176,7 +223,8 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Comman
     }
     ranges.emplace_back(first, outcomes.size());
   }
-  CheckedWork work(file);
+  const ExpectedWork expected(file);
+  CheckedWork work(expected);
   Computations computations(threads, [&work](const Check& check, double work_s) { work.add(check, work_s); });
   // A driven match cannot be divided among threads, so it begins at once, beside the games that many thresholds wait for.
   base::in_parallel(file.checks.size() + 1, threads, [&](std::size_t job) {
@@ -186,8 +234,11 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Comman
     }
     for (const Check& check : file.checks) {
       if (needs_samples(check)) {
-        computations.play_games(check, progress.begin(kPlaying));
+        computations.play_games(check, expected.games_s.contains(&check) ? progress.begin(kPlaying) : base::Progress());
       }
+    }
+    if (expected.drive_after_games_s() > 0.0) {
+      progress.begin(kDriving);
     }
   });
   work.begin(progress.begin(kChecking));
@@ -201,17 +252,6 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Comman
   return outcomes;
 }
 
-std::vector<base::JobPhase> check_phases(const CheckFile& file) {
-  std::vector<base::JobPhase> phases;
-  double all_s = 0.0;
-  for (const Check& check : file.checks) {
-    if (needs_samples(check)) {
-      phases.push_back({kPlaying, select::kDraw_s * select::draw_count(*check.duty, check.samples)});
-    }
-    all_s += Computations::usual_s(check);
-  }
-  phases.push_back({kChecking, all_s});
-  return phases;
-}
+std::vector<base::JobPhase> check_phases(const CheckFile& file) { return ExpectedWork(file).phases(); }
 
 }  // namespace heatsoak::check

@@ -121,13 +121,13 @@ std::vector<duty::WheelDemand> with_longer_pauses(std::vector<duty::WheelDemand>
   return wheels;
 }
 
-/// Combines the progress of jobs of different length. The unit is one motor in one game; playing the game takes about eleven units.
+/// Combines the progress of jobs of different length. The unit is one motor in one game; playing the game takes about five units.
 class ChangeWork {
  public:
   static constexpr std::size_t kEvaluation = 1;
-  static constexpr std::size_t kPlayedGame = 12;
+  static constexpr std::size_t kPlayedGame = 6;
 
-  static constexpr double kUnit_s = 0.04;  ///< on two cores
+  static constexpr double kUnit_s = 0.026;  ///< on two cores
 
   /// Returns the work of all changes: those that need games of their own, those that do not, and other motors.
   static std::size_t units(std::size_t variants, std::size_t games, std::size_t others) {

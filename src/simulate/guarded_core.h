@@ -19,9 +19,9 @@ enum class GuardUse {
 inline constexpr std::string_view kGuardUses[]{"off", "shadow", "on"};
 
 // Expected durations on two cores, for progress.
-inline constexpr double kPlayedGame_s = 0.5;  ///< nominal game
-inline constexpr double kGuard_s = 4.0;
-inline constexpr double kDrive_s = 4.0;  ///< one game on one core
+inline constexpr double kPlayedGame_s = 0.25;  ///< nominal game
+inline constexpr double kGuard_s = 0.8;
+inline constexpr double kDrive_s = 1.5;  ///< one game on one core
 
 /// Guard of a motor from derate(), or the reason why there is none.
 struct MotorGuard {

@@ -67,6 +67,52 @@ TEST(JobProgress, is_right_within_a_factor_of_two_where_declared_durations_are_o
   EXPECT_LT(worst_ratio({{"play", 10.0, 15.0, 75}, {"evaluate", 10.0, 6.0, 40}, {"change", 10.0, 13.0, 20}}, 0.2), 2.0);
 }
 
+// A phase of 100 s follows with a probability of 30 %: most probably nothing follows, and the estimate is a lower bound.
+TEST(JobProgress, a_phase_that_may_be_left_out_makes_a_lower_bound) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"play", 10.0}, {"more", 100.0, 0.3}});
+  const Progress progress = job.begin("play");
+  time_s = 5.0;
+  progress(1, 2);
+  EXPECT_NEAR(*job.estimate().remaining_s, 5.0, 0.1);
+  EXPECT_TRUE(job.estimate().is_least);
+  job.expect({{"more", 100.0, 0.05}});
+  EXPECT_FALSE(job.estimate().is_least) << "5 % are improbable";
+}
+
+// 10, 30 or 190 s remain, with probabilities of 40, 55 and 5 %. The estimate is within a factor of two of the first two.
+TEST(JobProgress, is_most_probably_right_within_a_factor_of_two) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"play", 10.0}, {"play", 20.0, 0.6}, {"play", 160.0, 0.05}});
+  job.begin("play");
+  const JobEstimate estimate = job.estimate();
+  EXPECT_FALSE(estimate.is_least);
+  EXPECT_GE(*estimate.remaining_s, 15.0);
+  EXPECT_LE(*estimate.remaining_s, 20.0);
+}
+
+// Nothing is as probable as a long rest: then the long rest counts, and no lower bound is stated.
+TEST(JobProgress, a_probable_phase_counts) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"play", 10.0}, {"more", 100.0, 0.7}});
+  job.begin("play");
+  EXPECT_NEAR(*job.estimate().remaining_s, 110.0, 1.0);
+  EXPECT_FALSE(job.estimate().is_least);
+}
+
+// The job may end soon, later or much later, each with a third: no estimate is probably right, so it is a lower bound.
+TEST(JobProgress, does_not_guess_between_very_different_times) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"play", 10.0}, {"play", 100.0, 0.66}, {"play", 1000.0, 0.33}});
+  job.begin("play");
+  EXPECT_NEAR(*job.estimate().remaining_s, 10.0, 0.1);
+  EXPECT_TRUE(job.estimate().is_least);
+}
+
 // A kind that was measured counts with its own speed, not with that of the job.
 TEST(JobProgress, measures_each_kind_of_work) {
   EXPECT_LT(worst_ratio({{"play", 1.0, 1.0, 5}, {"evaluate", 1.0, 20.0, 5}, {"play", 10.0, 10.0, 50}, {"evaluate", 10.0, 200.0, 50}}, 0.12),
