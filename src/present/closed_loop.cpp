@@ -90,9 +90,10 @@ void add_difference(Document& document, const simulate::EvaluationAnswer& answer
     return;
   }
   const bool is_cut = widest->verdict == select::Verdict::infeasible;
-  document.add_note(is_cut ? Severity::warning : Severity::note,
-                    fmt::format("The first game heats {} to {:.0f} °C in the closed loop and to {:.0f} °C without it: {}.",
+  document.add_note(Severity::scope,
+                    fmt::format("The first game heats {} to {:.0f} °C in the closed loop and to {:.0f} °C without it, {:.0f} K {}: {}.",
                                 widest->motor_id, widest->winding_peak_C.nominal + difference_K, widest->winding_peak_C.nominal,
+                                std::abs(difference_K), difference_K < 0.0 ? "less" : "more",
                                 is_cut ? "without it the whole demanded current flows, which the driver or the voltage does not allow"
                                        : "corrections and slip add heat; grip, voltage and current limits take heat away"));
 }

@@ -6,14 +6,14 @@
 #include <array>
 #include <cmath>
 
-#include "base/lanes.h"
+#include "base/counted.h"
 #include "present/changes.h"
 #include "present/closed_loop.h"
 #include "present/motor_notes.h"
 #include "present/robot_notes.h"
+#include "present/undecided.h"
 #include "present/verdict_chart.h"
 #include "present/verdict_words.h"
-#include "select/decision.h"
 
 namespace heatsoak::present {
 namespace {
@@ -49,16 +49,17 @@ std::string_view factor_text(const select::MotorEvaluation& motor) {
 /// A narrower terminal shows the winding temperature over time, scaled to the limit, instead of rank, limit and margin.
 constexpr std::size_t kLeastForLimit = 70;
 
-/// If `is_drawn`, the nominal run is one of many games.
-std::vector<Column> columns(bool is_drawn) {
+/// If `is_drawn`, the nominal run is one of many games. Without samples (`is_sampled`) there is no verdict.
+std::vector<Column> columns(bool is_drawn, bool is_sampled) {
   constexpr auto kLeft = Alignment::left;
   constexpr auto kRight = Alignment::right;
   const auto nominal = [is_drawn](std::string_view what) {
     return fmt::format("{}{}", what, is_drawn ? " in the game of the seed" : " with nominal values");
   };
   return {{"", "", 0, kRight, kLeastForLimit},
-          {"motor", "", 0, kLeft},
-          {"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"},
+          {.name = "motor", .alignment = kLeft, .may_shorten = true},
+          is_sampled ? Column{"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"}
+                     : Column{"nominal", "", 0, kLeft, 0, false, "within or over a temperature limit, or short of the demand; no verdict"},
           {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
           {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
           {"margin", "K", 0, kRight, kLeastForLimit, false, nominal("to the nearer limit")},
@@ -105,8 +106,6 @@ std::vector<Text> row(std::size_t rank, const select::MotorEvaluation& motor, do
           {p95_text(motor)}};
 }
 
-std::string nominal_words(const select::MotorEvaluation& motor) { return motor.samples == 0 ? " with nominal values" : ""; }
-
 /// Formats as "the winding reaches 162 °C (limit 155 °C, exceeded after 5 min)". On a duty that is drawn the nominal run is one of many
 /// games, so the percentile of all of them is stated.
 std::string peak_words(const select::MotorEvaluation& motor) {
@@ -128,37 +127,43 @@ std::string what_happens(const select::MotorEvaluation& motor) {
   const double over_ratio = motor.probability_over_limit.value_or(0.0);
   const double short_ratio = motor.short_probability.value_or(0.0);
   const std::string over = fmt::format("{:.0f} % of the samples exceed a limit", 100.0 * over_ratio);
+  const std::string_view factor = select::to_string(motor.limiting_factor);
   switch (shown_verdict(motor)) {
     case ShownVerdict::infeasible:
-      return fmt::format("cannot drive this duty{}: {} does not suffice", nominal_words(motor), select::to_string(motor.limiting_factor));
+      return fmt::format("cannot drive this duty: {} does not suffice", factor);
     case ShownVerdict::undecided:
       return fmt::format("is undecided: {}", words_of(*open_share(motor), motor.samples));
     case ShownVerdict::fail:
-      return fmt::format("fails{}: {}", nominal_words(motor), motor.games > 0 ? over : peak_words(motor));
+      return fmt::format("fails: {}", motor.games > 0 ? over : peak_words(motor));
     case ShownVerdict::marginal:
       return fmt::format("is marginal: {}", short_ratio > std::max(over_ratio, select::kMarginalProbability)
                                                 ? fmt::format("{:.0f} % of the samples cannot deliver the demand", 100.0 * short_ratio)
                                                 : over);
+    case ShownVerdict::nominal_within:
+      return fmt::format("stays within its limits with nominal values: {}", peak_words(motor));
+    case ShownVerdict::nominal_over:
+      return fmt::format("exceeds a limit with nominal values: {}", peak_words(motor));
+    case ShownVerdict::nominal_short:
+      return fmt::format("is short of the demand with nominal values: {} does not suffice", factor);
     case ShownVerdict::pass:
       break;
   }
-  return fmt::format("passes{}: {}", nominal_words(motor), peak_words(motor));
+  return fmt::format("passes: {}", peak_words(motor));
 }
 
-/// Adds the remark that mass and wheels of the robot do not matter if the duty states torque and speed itself.
-std::string load_words(const duty::Duty& duty) {
-  return duty.shape_data->depends_on_robot()
-             ? duty.id
-             : fmt::format("{} (a fixed wheel load: mass and wheel size of the robot do not matter)", duty.id);
-}
-
-/// Formats "1 of 3 motors passes division_a_match; 1 undecided.".
+/// Formats "1 of 3 motors passes division_a_match; 1 undecided", or without samples "1 of 3 motors stays within the limits on …".
 std::string counted_verdicts(const simulate::EvaluationAnswer& answer, const std::string& load) {
   const auto with = [&](ShownVerdict verdict) {
     return std::ranges::count_if(answer.results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
   };
+  const std::size_t all = answer.results.size();
+  if (answer.results.front().samples == 0) {
+    const auto within = with(ShownVerdict::nominal_within);
+    return fmt::format("{} of {} stay{} within the limits on {}", within, base::counted(all, "motor"), within == 1 || all == 1 ? "s" : "",
+                       load);
+  }
   const auto undecided = with(ShownVerdict::undecided);
-  return fmt::format("{} {}{}", passing_text(with(ShownVerdict::pass), answer.results.size(), "motor"), load,
+  return fmt::format("{} {}{}", passing_text(with(ShownVerdict::pass), all, "motor"), load,
                      undecided > 0 ? fmt::format("; {} undecided", undecided) : "");
 }
 
@@ -167,8 +172,13 @@ std::vector<Text> headline(const simulate::EvaluationAnswer& answer) {
   const auto sentence = [](const select::MotorEvaluation& motor, std::string_view prefix) {
     return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor)), tone_of(shown_verdict(motor))};
   };
-  const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return shown_verdict(each) == ShownVerdict::pass; });
-  std::vector<Text> sentences{{fmt::format("{}.", counted_verdicts(answer, load_words(answer.duty))), any_passes ? Tone::good : Tone::bad}};
+  const bool is_sampled = results.front().samples > 0;
+  const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return each.verdict == select::Verdict::pass; });
+  const std::string_view prefix = is_sampled ? "" : "No samples were drawn, so this is no verdict over tolerances: with nominal values ";
+  std::vector<Text> sentences{{fmt::format("{}{}.", prefix, counted_verdicts(answer, load_words(answer.duty))),
+                               !any_passes  ? Tone::bad
+                               : is_sampled ? Tone::good
+                                            : Tone::undecided}};
   if (const std::string slip = slip_text(answer.demand); !slip.empty()) {
     sentences.push_back({fmt::format("This holds only for a robot that follows the plan exactly, but {}. --closed-loop, or `heatsoak "
                                      "simulate`, shows whether this robot can drive it.",
@@ -196,37 +206,8 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
                      std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown: take more samples");
 }
 
-/// Returns how many more games or samples decide the verdict, with which probability.
-std::string deciding_words(const select::MotorEvaluation& motor) {
-  const bool is_drawn = motor.games > 0;
-  const std::string_view unit = is_drawn ? "games" : "samples";
-  const int most = select::most_samples_at_all(is_drawn);
-  const auto [half, nine_in_ten] = select::deciding_samples(motor);
-  const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
-  const auto more = [&](int samples) { return number(samples) - (is_drawn ? motor.games : motor.samples); };
-  if (!half) {
-    return fmt::format("The share is close to the threshold: {} {}, the most that --samples takes ({}), will probably not decide",
-                       number(most), unit, most);
-  }
-  return fmt::format("With a probability of 50 % {} more {} decide (--samples {}), with 90 % {}", more(*half), unit, *half,
-                     nine_in_ten ? fmt::format("{} more (--samples {})", more(*nine_in_ten), *nine_in_ten)
-                                 : fmt::format("over {} (--samples takes {} at most)", number(most), most));
-}
-
-std::string undecided_note(const select::MotorEvaluation& motor) {
-  const bool is_drawn = motor.games > 0;
-  const int usual = select::first_samples(is_drawn);
-  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.{}", motor.motor_id, select::to_string(motor.verdict),
-                     is_drawn ? "games" : "samples", is_drawn ? fmt::format("in {} games ", motor.games) : "",
-                     words_of(*open_share(motor), motor.samples), deciding_words(motor),
-                     motor.samples < usual ? fmt::format(" Without --samples, {} are drawn, and more if needed.", usual) : "");
-}
-
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {
   add_lines(document.notes, why_infeasible(motor, answer.robot), Severity::warning);
-  if (motor.samples_needed) {
-    document.add_note(Severity::warning, undecided_note(motor));
-  }
   if (motor.destroyed) {
     document.add_note(Severity::warning, fmt::format("{}: thermal runaway, the calculation ended at 1000 °C", motor.motor_id));
   }
@@ -331,23 +312,20 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
 Document ranking_document(const simulate::EvaluationAnswer& answer) {
   const std::vector<select::MotorEvaluation>& results = answer.results;
   Document document{.headline = headline(answer), .paragraphs = paragraphs(answer)};
-  Table table{.columns = columns(answer.draw_count > 0)};
+  Table table{.columns = columns(answer.draw_count > 0, results.front().samples > 0)};
   for (std::size_t i = 0; i < results.size(); ++i) {
     table.rows.push_back(row(i + 1, results[i], answer.duty.ambient_C.value));
   }
   document.tables.push_back(std::move(table));
+  if (answer.duty.shape_data->depends_on_robot() && !answer.closed_loop) {
+    document.add_note(Severity::scope,
+                      "`heatsoak simulate` gives other temperatures, because here the plan is followed exactly at the nominal voltage: "
+                      "corrections and slip add heat there; grip, voltage and current limits take heat away. --closed-loop states the "
+                      "difference and ranks motors with all that.");
+  }
+  add_undecided_note(document, results);
   for (const select::MotorEvaluation& each : results) {
     add_notes(document, each, answer);
-  }
-  if (answer.duty.shape_data->depends_on_robot()) {
-    document.add_note(
-        Severity::background,
-        fmt::format(
-            "{}, because {} the plan is followed exactly at the nominal voltage: corrections and slip add heat {}; grip, voltage and "
-            "current limits take heat away.{}",
-            answer.closed_loop ? "The games in closed loop give other temperatures" : "`heatsoak simulate` gives other temperatures",
-            answer.closed_loop ? "without it" : "here", answer.closed_loop ? "in it" : "there",
-            answer.closed_loop ? "" : " --closed-loop ranks motors with all that."));
   }
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
   for (const auto& [id, rests] : answer.rests) {

@@ -52,6 +52,7 @@ Json json(const select::MotorEvaluation& each) {
           {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
           {"current_rms_A", rounded(each.current_rms_A, 4)},
           {"verdict", select::to_string(each.verdict)},
+          {"decided", select::is_decided(each)},
           {"limiting_factor", select::to_string(each.limiting_factor)},
           {"data_quality", each.data_quality},
           {"wheel", each.wheel},

@@ -140,19 +140,30 @@ Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMat
   const bool is_of_stator = driven.verdict == select::Verdict::fail && score.winding_peak_C <= limits.winding_limit_C;
   const std::string what = driven.verdict == select::Verdict::infeasible
                                ? "cannot drive this match: " + words_of(*simulate::drive_problem(score), score)
-                           : driven.verdict == select::Verdict::fail ? "fails: "
-                                                                     : "passes: ";
+                           : driven.verdict == select::Verdict::fail ? "exceeds a limit: "
+                                                                     : "stays within its limits: ";
   const std::string peak = driven.verdict == select::Verdict::infeasible ? fmt::format(". It is not too hot: {}", winding)
                            : is_of_stator
                                ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C)", score.stator_peak_C, *limits.stator_limit_C)
                                : winding;
-  return {fmt::format("{} {}{}{}.", answer.motor.id, answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "",
+  return {fmt::format("In this one game (seed {}) the nominal {} {}{}{}.", answer.seed, answer.motor.id, answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "",
                       what, peak),
           tone_of(driven.verdict)};
 }
 
+/// Names the command that gives the verdict: one run with nominal values leaves out all tolerances.
+void add_scope(Document& document, const robot::Robot& robot, const motor::Motor& motor, const duty::Duty& duty, bool is_game) {
+  document.add_note(Severity::scope,
+                    fmt::format("This is {} with nominal values and no verdict over tolerances. `heatsoak evaluate --robot {} --duty {} "
+                                "--motors {}` gives it; {}.",
+                                is_game ? "one game" : "one run", robot.id, duty.id, motor.id,
+                                is_game ? "there the plan is followed exactly, so its temperatures differ, and --closed-loop states by how much"
+                                        : "its nominal temperatures are the same"));
+}
+
 std::string_view verb_of(select::Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kVerbs{"passes", "is marginal", "fails", "cannot drive this duty"};
+  constexpr std::array<std::string_view, 4> kVerbs{"stays within its limits on", "stays within its limits on", "exceeds a limit on",
+                                                   "cannot drive"};
   return kVerbs.at(static_cast<std::size_t>(verdict));
 }
 
@@ -182,6 +193,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
                                                               simulate::radio_of(answer.robot).packet_rate_Hz),
                         motor::data_quality(answer.motor), answer.duty.origin)},
                     .tables = {score_table(answer), energy_table(answer)}};
+  add_scope(document, answer.robot, answer.motor, answer.duty, true);
   for (const simulate::DrivenMatch& each : answer.runs) {
     document.headline.push_back(sentence(answer, each));
     if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(each.run.score);
@@ -205,8 +217,8 @@ Document match_document(const simulate::MatchSimulation& answer) {
 Document load_simulation_document(const select::LoadSimulation& simulation) {
   const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
   Document document{
-      .headline = {{fmt::format("{} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id, verb_of(result.verdict),
-                                result.winding_peak_C.nominal, result.winding_limit_C),
+      .headline = {{fmt::format("In this one run the nominal {} {} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id,
+                                verb_of(result.verdict), load_words(duty), result.winding_peak_C.nominal, result.winding_limit_C),
                     tone_of(result.verdict)}},
       .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. The load is {}.",
                                  robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
@@ -219,6 +231,7 @@ Document load_simulation_document(const select::LoadSimulation& simulation) {
   }
   table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});
   document.tables.push_back(std::move(table));
+  add_scope(document, robot, motor, duty, false);
   add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
   add_robot_notes(document, robot);
   add_motor_notes(document, {&motor, 1});

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/counted.h"
 #include "present/evaluation.h"
 #include "present/verdict_words.h"
 
@@ -110,7 +111,10 @@ std::string title_of(const std::vector<select::MotorEvaluation>& results, const 
     return std::ranges::count_if(results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
   };
   const auto open = count(ShownVerdict::undecided);
-  const std::string verdict = results.size() == 1
+  const std::string verdict = results.front().samples == 0
+                                  ? fmt::format("Nominal values: {} of {} within the limits", count(ShownVerdict::nominal_within),
+                                                base::counted(results.size(), "motor"))
+                              : results.size() == 1
                                   ? fmt::format("{}: {}", results.front().motor_id, to_string(shown_verdict(results.front())))
                                   : fmt::format("{}{}", passing_text(count(ShownVerdict::pass), results.size(), "motor"),
                                                 open > 0 ? fmt::format(", {} undecided", open) : "");

@@ -29,14 +29,15 @@ std::vector<VerdictMeaning> verdict_meanings() {
 std::string undecided_meaning() {
   return fmt::format(
       "The interval of the share of samples over a limit contains the threshold of two verdicts ({:.0f} %, and {:.0f} % on a duty that "
-      "is drawn). Without --samples the program doubles the samples if that can decide the verdict: up to five times, or once on a duty "
-      "that is drawn. The answer states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, "
+      "is drawn). Without --samples the program doubles the samples of undecided motors up to five times: to 16 000, or to 2400 games "
+      "on a duty that is drawn, where it stops earlier if a decision has become improbable (less than 20 %). The answer states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, "
       "give "
       "--samples one of these numbers. The interval allows for the repeated tests: the "
       "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a probability of at most 5 % "
       "(Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is "
-      "decided, exit code and JSON use that of the samples so far; the JSON key samples_needed is then a number, and --fail-on undecided "
-      "makes the exit code 1.",
+      "decided, exit code and JSON use that of the samples so far; the JSON key decided is then false, and --fail-on undecided makes "
+      "the exit code 1. Without any samples (--samples 0) there is no verdict over tolerances: the answer then says within, over or short "
+      "for the nominal motor, and decided is false.",
       100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
 }
 

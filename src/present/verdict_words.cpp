@@ -10,24 +10,26 @@
 namespace heatsoak::present {
 
 ShownVerdict shown_verdict(const select::MotorEvaluation& motor) {
-  if (motor.verdict == select::Verdict::infeasible) {
-    return ShownVerdict::infeasible;
+  if (motor.samples == 0) {
+    return motor.verdict == select::Verdict::infeasible ? ShownVerdict::nominal_short
+           : motor.verdict == select::Verdict::fail     ? ShownVerdict::nominal_over
+                                                        : ShownVerdict::nominal_within;
   }
   if (motor.samples_needed) {
     return ShownVerdict::undecided;
   }
-  return motor.verdict == select::Verdict::pass       ? ShownVerdict::pass
-         : motor.verdict == select::Verdict::marginal ? ShownVerdict::marginal
-                                                      : ShownVerdict::fail;
+  constexpr std::array<ShownVerdict, 4> kShown{ShownVerdict::pass, ShownVerdict::marginal, ShownVerdict::fail, ShownVerdict::infeasible};
+  return kShown.at(static_cast<std::size_t>(motor.verdict));
 }
 
 std::string_view to_string(ShownVerdict verdict) {
-  constexpr std::array<std::string_view, 5> kWords{"pass", "undecided", "marginal", "fail", "infeasible"};
+  constexpr std::array<std::string_view, 8> kWords{"pass", "undecided", "marginal", "fail", "infeasible", "within", "over", "short"};
   return kWords.at(static_cast<std::size_t>(verdict));
 }
 
 Tone tone_of(ShownVerdict verdict) {
-  constexpr std::array<Tone, 5> kTones{Tone::good, Tone::undecided, Tone::undecided, Tone::bad, Tone::bad};
+  constexpr std::array<Tone, 8> kTones{Tone::good, Tone::undecided, Tone::undecided, Tone::bad,
+                                       Tone::bad,  Tone::undecided, Tone::bad,       Tone::bad};
   return kTones.at(static_cast<std::size_t>(verdict));
 }
 
@@ -37,6 +39,12 @@ Tone tone_of(select::Verdict verdict) {
 
 std::string passing_text(std::ptrdiff_t passing, std::size_t all, std::string_view what) {
   return fmt::format("{} of {} pass{}", passing, base::counted(all, what), passing == 1 || all == 1 ? "es" : "");
+}
+
+std::string load_words(const duty::Duty& duty) {
+  return duty.shape_data->depends_on_robot()
+             ? duty.id
+             : fmt::format("{} (a fixed wheel load: mass and wheel size of the robot do not matter)", duty.id);
 }
 
 std::string percent_range(const select::Interval95& range) {

@@ -11,10 +11,11 @@
 
 namespace heatsoak::present {
 
-/// Verdict as it is displayed. A motor that cannot drive the duty is infeasible even if more samples could change that.
-enum class ShownVerdict { pass, undecided, marginal, fail, infeasible };
+/// Verdict as it is displayed. Without samples it is only that of the nominal motor in one run, and has other names than a verdict.
+enum class ShownVerdict { pass, undecided, marginal, fail, infeasible, nominal_within, nominal_over, nominal_short };
 ShownVerdict shown_verdict(const select::MotorEvaluation& motor);
-/// Returns "pass", "undecided", …; the JSON output keeps the more cautious verdict in place of "undecided".
+/// Returns "pass", "undecided", …, and without samples "within", "over", "short". The JSON output keeps the more cautious verdict in place
+/// of "undecided", and that of the nominal motor in place of the last three.
 std::string_view to_string(ShownVerdict verdict);
 /// Returns the colour of a verdict.
 Tone tone_of(ShownVerdict verdict);
@@ -22,6 +23,9 @@ Tone tone_of(select::Verdict verdict);
 
 /// Formats "1 of 1 motor passes", "2 of 3 motors pass".
 std::string passing_text(std::ptrdiff_t passing, std::size_t all, std::string_view what);
+
+/// Returns the id of the duty, with the remark that mass and wheels of the robot do not matter if the duty states torque and speed itself.
+std::string load_words(const duty::Duty& duty);
 
 /// Formats a range of shares in percent, rounded outwards: "0…3".
 std::string percent_range(const select::Interval95& range);

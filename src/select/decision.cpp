@@ -1,16 +1,13 @@
 #include "select/decision.h"
 
 #include <algorithm>
-#include <array>
-#include <boost/math/distributions/beta.hpp>
-#include <boost/math/distributions/binomial.hpp>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "base/binomial_bound.h"
 #include "base/lanes.h"
+#include "select/prospect.h"
 #include "select/spread.h"
 
 namespace heatsoak::select {
@@ -57,136 +54,6 @@ double error_share(int count, bool is_drawn) {
 
 int most_samples_at_all(bool is_drawn) { return is_drawn ? 80'000 : 1'000'000; }
 
-namespace {
-
-/// A threshold that the interval of a share covers, with that share. `kind`: 0 over the limit, 1 short of the demand.
-struct OpenThreshold {
-  double threshold_ratio = 0.0;
-  double share_ratio = 0.0;
-  std::size_t kind = 0;
-};
-
-/// Returns the thresholds of the verdict that the intervals cover. On a duty with draws `short_interval` and the majority count too.
-std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
-  const bool is_nominally_bad = motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible;
-  std::vector<OpenThreshold> open;
-  if (motor.samples == 0 || (!is_drawn && is_nominally_bad)) {
-    return open;
-  }
-  const std::array kinds{std::pair(motor.probability_over_limit.value_or(0.0), *motor.probability_interval),
-                         std::pair(motor.short_probability.value_or(0.0), short_interval)};
-  const auto add = [&](double threshold_ratio) {
-    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-      const auto& [share_ratio, interval] = kinds.at(kind);
-      if (interval.low <= threshold_ratio && interval.high > threshold_ratio) {
-        open.push_back({threshold_ratio, share_ratio, kind});
-      }
-    }
-  };
-  if (is_drawn) {
-    add(kMajority);
-  }
-  // If one probability is certainly above the threshold, the motor is marginal, whatever the other is.
-  const bool is_marginal_for_certain = std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
-  if (!is_nominally_bad && !is_marginal_for_certain) {
-    add(kMarginalProbability);
-  }
-  return open;
-}
-
-/// Returns the smallest number in (low, high] for which `holds`, which must be true from some number on; nothing if it is false at `high`.
-template <class Holds>
-std::optional<int> first_that_holds(int low, int high, const Holds& holds) {
-  if (!holds(high)) {
-    return std::nullopt;
-  }
-  while (high - low > 1) {
-    const int middle = std::midpoint(low, high);
-    (holds(middle) ? high : low) = middle;
-  }
-  return high;
-}
-
-/// Predicts whether a number of draws decides on which side of a threshold a share lies.
-class Predicted {
- public:
-  Predicted(const OpenThreshold& open, int draws, bool is_drawn)
-      : threshold_ratio_(open.threshold_ratio), over_count_(std::round(open.share_ratio * draws)), draws_(draws), is_drawn_(is_drawn) {
-    const boost::math::beta_distribution<> share(over_count_ + 0.5, draws - over_count_ + 0.5);
-    for (std::size_t i = 0; i < shares_.size(); ++i) {
-      shares_[i] = boost::math::quantile(share, (static_cast<double>(i) + 0.5) / static_cast<double>(shares_.size()));
-    }
-  }
-
-  /// Returns the probability that the interval of `draws` draws in total excludes the threshold.
-  [[nodiscard]] double probability(int draws) const {
-    const auto interval = [&](int over) {
-      return base::share_interval(static_cast<double>(over) / draws, draws, error_share(draws, is_drawn_));
-    };
-    const int near = static_cast<int>(threshold_ratio_ * draws);
-    const std::optional<int> least_above =
-        first_that_holds(near - 1, draws, [&](int over) { return interval(over).low > threshold_ratio_; });
-    const std::optional<int> least_open = first_that_holds(-1, near + 1, [&](int over) { return interval(over).high > threshold_ratio_; });
-    const double more = draws - draws_;
-    const auto at_most = [&](double over, double share_ratio) {
-      const double later = over - over_count_;
-      return later < 0.0 ? 0.0 : later >= more ? 1.0 : boost::math::cdf(boost::math::binomial_distribution<>(more, share_ratio), later);
-    };
-    double sum = 0.0;
-    for (const double share_ratio : shares_) {
-      sum += least_open ? at_most(*least_open - 1.0, share_ratio) : 1.0;
-      sum += least_above ? 1.0 - at_most(*least_above - 1.0, share_ratio) : 0.0;
-    }
-    return sum / static_cast<double>(shares_.size());
-  }
-
- private:
-  double threshold_ratio_;
-  double over_count_;
-  int draws_;
-  bool is_drawn_;
-  std::array<double, 64> shares_{};  ///< quantiles of the share's distribution
-};
-
-/// Predicts whether a number of draws decides all open thresholds.
-class AllPredicted {
- public:
-  AllPredicted(const std::vector<OpenThreshold>& open, int draws, bool is_drawn) {
-    for (const OpenThreshold& each : open) {
-      of_kind_.at(each.kind).emplace_back(each, draws, is_drawn);
-    }
-  }
-  /// The shares are taken as independent. Of two thresholds of one share the less certain one counts, because both depend on that share.
-  [[nodiscard]] double probability(int draws) const {
-    double all = 1.0;
-    for (const std::vector<Predicted>& kind : of_kind_) {
-      double least = 1.0;
-      for (const Predicted& each : kind) {
-        least = std::min(least, each.probability(draws));
-      }
-      all *= least;
-    }
-    return all;
-  }
-
- private:
-  std::array<std::vector<Predicted>, 2> of_kind_;
-};
-
-/// Returns the number of draws that decide with the probability: at most 5 % more than the smallest.
-std::optional<int> deciding_draws(const AllPredicted& predicted, int draws, int most, double probability_ratio) {
-  const auto suffices = [&](int count) { return predicted.probability(count) >= probability_ratio; };
-  int low = draws;
-  int high = draws + 1 + draws / 20;
-  while (high < most && !suffices(high)) {
-    low = high;
-    high = std::min(most, high + 1 + high / 3);
-  }
-  return first_that_holds(low, high, suffices);
-}
-
-}  // namespace
-
 std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
   std::optional<int> most;
   for (const auto& [threshold_ratio, share_ratio, kind] : open_thresholds(motor, short_interval, is_drawn)) {
@@ -196,41 +63,19 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95
 }
 
 DecidingSamples deciding_samples(const MotorEvaluation& motor) {
-  const bool is_drawn = motor.games > 0;
-  const int per_draw = is_drawn ? base::kLanes : 1;
-  const int draws = (motor.samples + per_draw - 1) / per_draw;
-  const int most = most_samples_at_all(is_drawn) / per_draw;
-  const std::vector<OpenThreshold> open = open_thresholds(motor, motor.short_interval.value_or(Interval95{}), is_drawn);
-  DecidingSamples found;
-  if (open.empty()) {
-    return found;
-  }
-  const AllPredicted predicted(open, draws, is_drawn);
-  const auto samples_for = [&](double probability_ratio) {
-    const std::optional<int> count = deciding_draws(predicted, draws, most, probability_ratio);
-    return count ? std::optional(*count * per_draw) : std::nullopt;
-  };
-  found.half = samples_for(0.5);
-  found.nine_in_ten = samples_for(0.9);
-  return found;
-}
-
-LaterWork later_work(std::span<const int> needed, int samples, int most) {
-  LaterWork work;
-  for (int count = samples; count < most;) {
-    const auto open = static_cast<double>(std::ranges::count_if(needed, [count](int each) { return each > count; }));
-    count = std::min(most, 2 * count);
-    work.evaluations_count += open;
-    work.samples_count += open * count;
-  }
-  return work;
+  const Prospect prospect(motor);
+  return {prospect.deciding_samples(0.5), prospect.deciding_samples(0.9)};
 }
 
 int most_samples(const duty::Duty& duty) {
-  constexpr int kOneDoubling = 2;
   constexpr int kFiveDoublings = 32;
-  const bool is_drawn = duty.shape_data->has_unknowns();
-  return first_samples(is_drawn) * (is_drawn ? kOneDoubling : kFiveDoublings);
+  return first_samples(duty.shape_data->has_unknowns()) * kFiveDoublings;
+}
+
+bool is_worth_another_round(const Prospect& prospect, int most) {
+  constexpr double kLeastChance = 0.2;
+  const double chance = prospect.decided_probability(most);
+  return chance < 1.0 && chance >= kLeastChance;
 }
 
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
@@ -250,7 +95,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, c
   while (options.samples < most) {
     std::vector<motor::Motor> open;
     for (const MotorEvaluation& each : results) {
-      if (each.samples_needed && (!is_drawn || *each.samples_needed <= most)) {
+      if (each.samples_needed && (!is_drawn || is_worth_another_round(Prospect(each), most))) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &motor::Motor::id));
       }
     }

@@ -1,13 +1,11 @@
 #include "select/round_plan.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <iterator>
 #include <string>
 #include <utility>
 
-#include "base/binomial_bound.h"
 #include "base/lanes.h"
 #include "select/decision.h"
 
@@ -17,72 +15,27 @@ namespace {
 const std::string kPlaying = "playing games";
 const std::string kEvaluating = "evaluating";
 
-constexpr double kNominalRun_s = 0.065;
-constexpr double kBlock_s = 0.006;
-
-void append(std::vector<base::JobPhase>& all, std::vector<base::JobPhase> more) { std::ranges::move(more, std::back_inserter(all)); }
-
-/// Returns the probability that a log-normal rise with these percentiles exceeds the limit.
-double share_over(const Spread95& peak_C, double limit_C, double ambient_C) {
-  const double median_K = peak_C.p50.value_or(peak_C.nominal) - ambient_C;
-  const double high_K = peak_C.p95.value_or(peak_C.nominal) - ambient_C;
-  if (!(median_K > 0.0 && high_K > median_K && limit_C > ambient_C)) {
-    return peak_C.nominal > limit_C ? 1.0 : 0.0;
-  }
-  const boost::math::normal standard;
-  const double sd = std::log(high_K / median_K) / boost::math::quantile(standard, 0.95);
-  return boost::math::cdf(boost::math::complement(standard, std::log((limit_C - ambient_C) / median_K) / sd));
-}
-
-Interval95 interval_of(double share_ratio, int draws) {
-  const base::ShareInterval interval = base::share_interval(share_ratio, draws, error_share(draws, true));
-  return {interval.low, interval.high};
-}
+constexpr double kNominalRun_s = 0.026;
+constexpr double kBlock_s = 0.0014;
 
 }  // namespace
 
 double evaluation_work_s(double motors_count, int samples) { return motors_count * (kNominalRun_s + kBlock_s * samples / base::kLanes); }
 
-MotorEvaluation foreseen(const MotorEvaluation& few, int samples, double ambient_C) {
-  MotorEvaluation result = few;
-  result.samples = samples;
-  result.games = (samples + base::kLanes - 1) / base::kLanes;
-  double over = share_over(few.winding_peak_C, few.winding_limit_C, ambient_C);
-  if (few.stator_limit_C) {
-    over = std::max(over, share_over(few.stator_peak_C, *few.stator_limit_C, ambient_C));
-  }
-  const double missed = few.short_probability.value_or(0.0);
-  result.probability_over_limit = over;
-  result.probability_interval = interval_of(over, result.games);
-  result.short_interval = interval_of(missed, result.games);
-  const bool is_marginal = std::max(result.probability_interval->high, missed) > kMarginalProbability;
-  result.verdict = missed > kMajority ? Verdict::infeasible
-                   : over > kMajority ? Verdict::fail
-                   : is_marginal      ? Verdict::marginal
-                                      : Verdict::pass;
-  result.samples_needed = samples_needed(result, *result.short_interval, true);
-  return result;
-}
-
 RoundPlan::RoundPlan(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
                      std::span<const motor::Motor> motors, int most, const RoundsProgress& progress)
     : robot_(robot), duty_(duty), wheels_(wheels), motors_(motors), most_(most), progress_(progress) {}
 
-void RoundPlan::foresee(EvaluateOptions options, std::vector<duty::WheelDemand>& draws) const {
+void RoundPlan::foresee(const EvaluateOptions& options, std::vector<duty::WheelDemand>& draws) const {
   if (!progress_.job) {
     return;
   }
   constexpr int kFewGames = 6;
   constexpr std::size_t kSomeMotors = 6;
   const int all = draw_count(duty_, options.samples);
-  const auto first = [&](int drawn, std::span<const MotorEvaluation> known) {
-    std::vector<base::JobPhase> phases = round(static_cast<double>(motors_.size()), options.samples, all - drawn);
-    append(phases, rounds_after(known, options.samples));
-    append(phases, later(known));
-    return phases;
-  };
+  const auto first = [&](int drawn) { return round(static_cast<double>(motors_.size()), options.samples, all - drawn); };
   if (all < 4 * kFewGames) {
-    progress_.job.expect(first(0, {}), true);
+    expect(first(0), {}, options.samples);
     return;
   }
   std::vector<motor::Motor> some;
@@ -92,26 +45,28 @@ void RoundPlan::foresee(EvaluateOptions options, std::vector<duty::WheelDemand>&
       some.push_back(motors_[i]);
     }
   }
-  const int samples = options.samples;
-  const auto count = static_cast<double>(some.size());
-  std::vector<base::JobPhase> phases = round(count, kFewGames * base::kLanes, kFewGames);
-  append(phases, first(kFewGames, {}));
-  progress_.job.expect(std::move(phases), true);
+  std::vector<base::JobPhase> phases = round(static_cast<double>(some.size()), kFewGames * base::kLanes, kFewGames);
+  std::ranges::move(first(kFewGames), std::back_inserter(phases));
+  expect(std::move(phases), {}, options.samples);
   add_draws(draws, duty_, robot_, options.seed, kFewGames, options.threads, playing());
-  options.draws = draws;
-  options.samples = kFewGames * base::kLanes;
-  options.with_curves = options.with_bands = false;
-  std::vector<MotorEvaluation> known = evaluate(robot_, duty_, wheels_, some, options, evaluating(some.size(), options.samples));
-  std::ranges::transform(known, known.begin(), [&](const MotorEvaluation& each) { return foreseen(each, samples, duty_.ambient_C.value); });
-  options.samples = samples;
-  progress_.job.expect(first(kFewGames, known));
+  EvaluateOptions few = options;
+  few.draws = draws;
+  few.samples = kFewGames * base::kLanes;
+  few.with_curves = few.with_bands = false;
+  std::vector<Prospect> prospects;
+  for (const MotorEvaluation& each : evaluate(robot_, duty_, wheels_, some, few, evaluating(some.size(), few.samples))) {
+    prospects.push_back(Prospect::of_few_games(each, duty_.ambient_C.value));
+  }
+  expect(first(kFewGames), prospects, options.samples);
 }
 
 void RoundPlan::update(std::span<const MotorEvaluation> results, int samples) const {
   if (progress_.job) {
-    std::vector<base::JobPhase> phases = rounds_after(results, samples);
-    append(phases, later(results));
-    progress_.job.expect(std::move(phases));
+    std::vector<Prospect> prospects;
+    for (const MotorEvaluation& each : results) {
+      prospects.emplace_back(each);
+    }
+    expect({}, prospects, samples);
   }
 }
 
@@ -142,30 +97,33 @@ std::vector<base::JobPhase> RoundPlan::round(double motors_count, int samples, i
   return phases;
 }
 
-std::vector<base::JobPhase> RoundPlan::rounds_after(std::span<const MotorEvaluation> results, int samples) const {
-  std::vector<int> needed;
-  for (const MotorEvaluation& each : results) {
-    if (each.samples_needed && (!duty_.shape_data->has_unknowns() || *each.samples_needed <= most_)) {
-      needed.push_back(*each.samples_needed);
-    }
-  }
-  std::vector<base::JobPhase> phases;
-  // The results may be those of a part of the motors.
-  const double scale = results.empty() ? 1.0 : static_cast<double>(motors_.size()) / static_cast<double>(results.size());
+void RoundPlan::expect(std::vector<base::JobPhase> certain, std::span<const Prospect> prospects, int samples) const {
+  std::vector<base::JobPhase> phases = std::move(certain);
+  const bool is_drawn = duty_.shape_data->has_unknowns();
+  // The prospects may be those of a part of the motors.
+  const double scale = prospects.empty() ? 1.0 : static_cast<double>(motors_.size()) / static_cast<double>(prospects.size());
   for (int count = samples; count < most_;) {
+    double none = 1.0;
+    double open = 0.0;
+    for (const Prospect& each : prospects) {
+      const double is_open = is_drawn && !is_worth_another_round(each, most_) ? 0.0 : 1.0 - each.decided_probability(count);
+      none *= std::pow(1.0 - is_open, scale);
+      open += scale * is_open;
+    }
     const int longer = std::min(most_, 2 * count);
-    const double open = later_work(needed, count, longer).evaluations_count;
-    if (open == 0.0) {
+    const double any = 1.0 - none;
+    constexpr double kNever = 0.01;
+    if (any < kNever) {
       break;
     }
-    append(phases, round(scale * open, longer, draw_count(duty_, longer) - draw_count(duty_, count)));
+    for (base::JobPhase& each : round(open / any, longer, draw_count(duty_, longer) - draw_count(duty_, count))) {
+      each.probability = any;
+      phases.push_back(std::move(each));
+    }
     count = longer;
   }
-  return phases;
-}
-
-std::vector<base::JobPhase> RoundPlan::later(std::span<const MotorEvaluation> results) const {
-  return progress_.later ? progress_.later(results) : std::vector<base::JobPhase>();
+  std::ranges::move(progress_.later ? progress_.later(prospects) : std::vector<base::JobPhase>(), std::back_inserter(phases));
+  progress_.job.expect(std::move(phases), prospects.empty());
 }
 
 }  // namespace heatsoak::select

@@ -8,27 +8,24 @@
 
 #include "base/job_progress.h"
 #include "select/evaluate.h"
+#include "select/prospect.h"
 
 namespace heatsoak::select {
 
 /// Return the usual durations in s on two cores for a match: of one drawn game, and of the evaluation of `motors_count` motors. Only their
 /// ratios matter once work has been measured.
-inline constexpr double kDraw_s = 0.12;
+inline constexpr double kDraw_s = 0.035;
 double evaluation_work_s(double motors_count, int samples);
 
 /// Progress of an evaluation that may be a part of a longer job.
 struct RoundsProgress {
   base::JobProgress job = {};
-  /// Returns the phases that follow an evaluation with these results, which are empty if nothing is known yet. May be null.
-  std::function<std::vector<base::JobPhase>(std::span<const MotorEvaluation>)> later = {};
+  /// Returns the phases that follow an evaluation with these prospects, which are empty if nothing is known yet. May be null.
+  std::function<std::vector<base::JobPhase>(std::span<const Prospect>)> later = {};
 };
 
-/// Returns what an evaluation with `samples` samples will probably give, from one with few samples: the rise of the peak temperature above
-/// the air is taken as log-normal. Only verdict, shares with their intervals, and samples_needed are meaningful.
-MotorEvaluation foreseen(const MotorEvaluation& few, int samples, double ambient_C);
-
-/// Declares the phases of evaluate_until_decided(): the first round, and the later ones that the results make probable. Refers to all
-/// arguments of its constructor.
+/// Declares the phases of evaluate_until_decided(): the first round, and the later ones with their probabilities. Refers to all arguments
+/// of its constructor.
 class RoundPlan {
  public:
   RoundPlan(const robot::Robot& robot, const duty::Duty& duty, std::span<const duty::WheelDemand> wheels,
@@ -36,7 +33,7 @@ class RoundPlan {
 
   /// Declares the first round. If progress of a job with drawn games is shown, a few games are played first, and some motors are evaluated
   /// in them, to estimate the durations of the rounds. `draws` receives these games, which the first round needs anyway.
-  void foresee(EvaluateOptions options, std::vector<duty::WheelDemand>& draws) const;
+  void foresee(const EvaluateOptions& options, std::vector<duty::WheelDemand>& draws) const;
   /// Declares the later rounds from the results of a round with `samples` samples.
   void update(std::span<const MotorEvaluation> results, int samples) const;
   /// Begins the games of a round.
@@ -46,8 +43,8 @@ class RoundPlan {
 
  private:
   [[nodiscard]] std::vector<base::JobPhase> round(double motors_count, int samples, int draws) const;
-  [[nodiscard]] std::vector<base::JobPhase> rounds_after(std::span<const MotorEvaluation> results, int samples) const;
-  [[nodiscard]] std::vector<base::JobPhase> later(std::span<const MotorEvaluation> results) const;
+  /// Declares `certain` phases, then those that may follow a round with `samples` samples.
+  void expect(std::vector<base::JobPhase> certain, std::span<const Prospect> prospects, int samples) const;
 
   const robot::Robot& robot_;
   const duty::Duty& duty_;

@@ -42,14 +42,15 @@ GameDriveOptions drive_options(const EvaluationJob& job) {
   return {loop.games, job.seed, job.duty.ambient_C.value, loop.guard, false, job.threads};
 }
 
-/// Returns the result whose motor the changes are for: the robot's own, else the best.
-const select::MotorEvaluation& subject_of(std::span<const select::MotorEvaluation> results, const robot::Robot& robot) {
-  const auto own = std::ranges::find(results, robot.drive.motor, &select::MotorEvaluation::motor_id);
-  return own == results.end() ? results.front() : *own;
+/// Returns the element of the motor that the changes are for, in a range of results or prospects: the robot's own, else the best.
+template <class Range, class Id>
+const auto& subject_of(const Range& motors, const robot::Robot& robot, Id id) {
+  const auto own = std::ranges::find(motors, robot.drive.motor, id);
+  return own == motors.end() ? motors.front() : *own;
 }
 
 std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const base::JobProgress& progress) {
-  const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot);
+  const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot, &select::MotorEvaluation::motor_id);
   if (!job.suggests && subject.verdict == select::Verdict::pass) {
     return std::nullopt;
   }
@@ -92,7 +93,7 @@ select::Verdict EvaluationAnswer::worst_verdict() const {
 }
 
 bool EvaluationAnswer::is_undecided() const {
-  return ranks.empty() && std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return each.samples_needed.has_value(); });
+  return ranks.empty() && std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return !select::is_decided(each); });
 }
 
 EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgress& progress) {
@@ -122,12 +123,13 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
   progress.begin(kFirstGame);
   const std::vector<duty::WheelDemand> wheels = job.duty.demand(answer.robot, job.seed);
   std::vector<duty::WheelDemand> draws;
-  const auto later = [&](std::span<const select::MotorEvaluation> results) {
+  const auto later = [&](std::span<const select::Prospect> prospects) {
     std::vector<base::JobPhase> phases = job.closed_loop ? drive_phases(job.motors.size(), drive) : std::vector<base::JobPhase>();
     constexpr std::size_t kUsualOthers = 30;
-    if (job.suggests || (!results.empty() && subject_of(results, answer.robot).verdict != select::Verdict::pass)) {
-      phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, kUsualOthers)});
-    }
+    const double probability = job.suggests        ? 1.0
+                               : prospects.empty() ? 0.0
+                                                   : 1.0 - subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability();
+    phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, kUsualOthers), probability});
     return phases;
   };
   answer.results = select::evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, {progress, later});

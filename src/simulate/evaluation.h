@@ -64,7 +64,8 @@ struct EvaluationAnswer {
 
   /// Returns the worst verdict of all motors; in closed loop that of the games.
   [[nodiscard]] select::Verdict worst_verdict() const;
-  /// Returns whether more samples could change the verdict of a motor; false in closed loop, whose games decide.
+  /// Returns whether the verdict of a motor is not decided, because it needs more samples or none were drawn; false in closed loop, whose
+  /// games decide.
   [[nodiscard]] bool is_undecided() const;
 };
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/binomial_bound.h"
+#include "present/renderer.h"
 #include "present/verdict_topic.h"
 #include "present/verdict_words.h"
 #include "select/decision.h"
@@ -96,14 +97,33 @@ TEST(SamplesNeeded, demand_that_is_missed_counts_too) {
   EXPECT_TRUE(select::samples_needed(motor, {0.03, 0.07}, false));
 }
 
-// A motor without enough current is shown as infeasible, even if more samples could change its verdict.
-TEST(ShownVerdict, infeasible_comes_before_undecided) {
+// Every verdict that more samples could change is shown as undecided, also that of a motor without enough current.
+TEST(ShownVerdict, is_undecided_until_more_samples_would_not_change_it) {
   select::MotorEvaluation motor = sampled(0.9, {0.8, 0.99}, 600);
   EXPECT_EQ(shown_verdict(motor), ShownVerdict::pass);
   motor.samples_needed = 4352;
   EXPECT_EQ(shown_verdict(motor), ShownVerdict::undecided);
   motor.verdict = select::Verdict::infeasible;
+  EXPECT_EQ(shown_verdict(motor), ShownVerdict::undecided);
+  motor.samples_needed = {};
   EXPECT_EQ(shown_verdict(motor), ShownVerdict::infeasible);
+}
+
+// The nominal motor alone gives no verdict, so no word of a verdict describes it.
+TEST(ShownVerdict, has_other_words_without_samples) {
+  std::set<std::string_view> verdicts;
+  std::set<std::string_view> nominal;
+  for (const auto verdict : {select::Verdict::pass, select::Verdict::fail, select::Verdict::infeasible}) {
+    for (const int samples : {0, 600}) {
+      select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, samples);
+      motor.verdict = verdict;
+      (samples > 0 ? verdicts : nominal).insert(to_string(shown_verdict(motor)));
+    }
+  }
+  EXPECT_EQ(nominal.size(), 3U);
+  for (const std::string_view word : nominal) {
+    EXPECT_FALSE(verdicts.contains(word)) << word;
+  }
 }
 
 TEST(OpenShare, is_the_share_whose_interval_covers_a_threshold) {
@@ -199,8 +219,8 @@ TEST(EvaluationDocument, a_closed_loop_states_the_difference_of_a_motor_whose_cu
   answer.ranks[0].drives.games[0].winding_peak_C = 202.0;
   const Document document = evaluation_document(answer);
   EXPECT_TRUE(std::ranges::any_of(document.notes, [](const Note& each) {
-    return each.severity == Severity::warning && each.words.find("202 °C") != std::string::npos &&
-           each.words.find("450 °C") != std::string::npos;
+    return each.severity == Severity::scope && each.words.find("202 °C") != std::string::npos &&
+           each.words.find("450 °C") != std::string::npos && each.words.find("248 K less") != std::string::npos;
   }));
   for (const Note& each : document.notes) {
     EXPECT_THAT(each.words, Not(HasSubstr("--closed-loop"))) << "advice that was followed already";
@@ -240,6 +260,64 @@ TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limi
   EXPECT_TRUE(rest.at("rest_all_s").is_null());
 }
 
+select::MotorEvaluation undecided(const std::string& id, int over_of_75_games) {
+  const double share = over_of_75_games / 75.0;
+  const base::ShareInterval interval = base::share_interval(share, 75, select::error_share(75, true));
+  select::MotorEvaluation motor = sampled(share, {interval.low, interval.high}, 600);
+  motor.motor_id = id;
+  motor.games = 75;
+  motor.verdict = select::Verdict::marginal;
+  motor.short_probability = 0.0;
+  motor.short_interval = select::Interval95{0.0, 0.048};
+  motor.samples_needed = select::samples_needed(motor, *motor.short_interval, true);
+  return motor;
+}
+
+// One note for all undecided motors leaves room for the other notes.
+TEST(EvaluationDocument, has_one_note_for_all_undecided_motors) {
+  for (const std::size_t count : {1U, 3U}) {
+    std::vector<select::MotorEvaluation> motors{undecided("a", 3), undecided("b", 1), undecided("c", 2)};
+    motors.resize(count);
+    simulate::EvaluationAnswer answer = answer_with(motors, "division_a_match");
+    answer.draw_count = 75;
+    std::vector<std::string> notes;
+    for (const Note& each : evaluation_document(answer).notes) {
+      if (each.words.find("--samples") != std::string::npos) {
+        notes.push_back(each.words);
+      }
+    }
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_THAT(notes.front(), HasSubstr("probability of 50 %"));
+    for (std::size_t i = 0; count > 1 && i < count; ++i) {
+      const select::DecidingSamples deciding = select::deciding_samples(motors.at(i));
+      EXPECT_THAT(notes.front(), HasSubstr(motors.at(i).motor_id + " " + std::to_string(*deciding.half) + " to "));
+    }
+    EXPECT_FALSE(evaluation_json(answer).at("motors").at(0).at("decided").get<bool>());
+  }
+}
+
+TEST(EvaluationJson, a_verdict_without_samples_is_not_decided) {
+  for (const int samples : {0, 500}) {
+    const Json motor = evaluation_json(answer_with({sampled(0.0, {0.0, 0.01}, samples)})).at("motors").at(0);
+    EXPECT_EQ(motor.at("decided").get<bool>(), samples > 0);
+    EXPECT_EQ(motor.at("verdict"), "pass");
+  }
+}
+
+// The reason why `simulate` gives another temperature must be among the three notes that are shown.
+TEST(EvaluationDocument, states_first_that_simulate_gives_other_temperatures) {
+  const Document document = evaluation_document(answer_with({undecided("a", 3), undecided("b", 1)}, "division_a_match"));
+  EXPECT_THAT(by_urgency(document.notes).front().words, AllOf(HasSubstr("`heatsoak simulate`"), HasSubstr("slip")));
+}
+
+TEST(EvaluationDocument, without_samples_it_says_that_nothing_was_drawn) {
+  select::MotorEvaluation motor;
+  motor.probability_over_limit = {};
+  const Document document = evaluation_document(answer_with({motor}));
+  EXPECT_THAT(document.headline.front().words, AllOf(HasSubstr("No samples were drawn"), Not(HasSubstr("passes"))));
+  EXPECT_EQ(document.headline.front().tone, Tone::undecided);
+}
+
 TEST(EvaluationDocument, nominal_values_are_named_whatever_the_verdict) {
   for (const select::Verdict verdict : {select::Verdict::pass, select::Verdict::fail, select::Verdict::infeasible}) {
     select::MotorEvaluation motor;
@@ -261,19 +339,24 @@ TEST(EvaluationDocument, warns_of_implausible_values_of_the_robot) {
   EXPECT_EQ(warnings(), before + 1);
 }
 
-// The first line of the answer names the first row of the table.
-TEST(EvaluationDocument, lists_the_change_that_saves_most_first) {
+// Another motor helps most of all. It must not take the place of one of the three changes of the robot.
+TEST(EvaluationDocument, lists_three_changes_of_the_robot_and_another_motor) {
   simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
   answer.changes =
       simulate::SuggestedChanges{"m",
-                                 {{.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0},
+                                 {{.quantity = select::ChangedQuantity::jerk, .before = 20.0, .factor = 0.5, .saved_K = 15.0},
+                                  {.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0},
+                                  {.quantity = select::ChangedQuantity::mass, .before = 2.5, .factor = 0.9, .saved_K = 5.0},
+                                  {.quantity = select::ChangedQuantity::speed, .before = 3.0, .factor = 0.9, .saved_K = 2.0},
                                   {.quantity = select::ChangedQuantity::motor, .other_motor = "other", .saved_K = 100.0}}};
   const Document document = evaluation_document(answer);
   const Table& table = document.tables.back();
-  ASSERT_EQ(table.rows.size(), 2U);
-  EXPECT_EQ(table.rows.front().front().words, "motor other");
-  EXPECT_EQ(table.rows.back().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
-  EXPECT_THAT(document.headline.back().words, HasSubstr("motor to other, 100 K cooler"));
+  ASSERT_EQ(table.rows.size(), 3U);
+  EXPECT_EQ(table.rows.front().front().words, select::name_of(select::ChangedQuantity::gear_ratio));
+  EXPECT_EQ(table.rows.back().front().words, select::name_of(select::ChangedQuantity::mass));
+  const std::size_t last = document.headline.size() - 1;
+  EXPECT_THAT(document.headline.at(last - 1).words, HasSubstr("gear ratio from 1 to 1.25, 20 K cooler"));
+  EXPECT_THAT(document.headline.at(last).words, HasSubstr("Another motor, other, is 100 K cooler"));
   EXPECT_EQ(table.columns.size(), 4U) << "one calculation has no standard error";
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "present/match_chart.h"
+#include "present/renderer.h"
 #include "present/verdict_chart.h"
 #include "support/shipped.h"
 
@@ -54,6 +55,26 @@ TEST(MatchAnswer, has_one_sentence_per_planner_with_its_own_verdict) {
   ASSERT_EQ(document.headline.size(), 2U);
   EXPECT_EQ(document.headline[0].tone, Tone::good);
   EXPECT_EQ(document.headline[1].tone, Tone::bad);
+}
+
+// One game with nominal values is no verdict over tolerances, which `evaluate` gives.
+TEST(MatchAnswer, says_first_that_it_is_one_game_and_names_evaluate) {
+  const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
+                                                driven(duty::Planner::bang_bang, select::Verdict::fail, 173.5)));
+  for (const Text& sentence : document.headline) {
+    EXPECT_NE(sentence.words.find("In this one game (seed 1) the nominal"), std::string::npos) << sentence.words;
+    EXPECT_EQ(sentence.words.find("passes"), std::string::npos) << sentence.words;
+  }
+  EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
+}
+
+TEST(LoadAnswer, says_first_that_mass_and_wheels_do_not_matter) {
+  const select::LoadSimulation simulation = select::simulate_load(
+      {.robot = twente(), .motor = ecx_32(), .duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml")});
+  const Document document = load_simulation_document(simulation);
+  EXPECT_NE(document.headline.front().words.find("mass and wheel size of the robot do not matter"), std::string::npos);
+  EXPECT_NE(document.headline.front().words.find("nominal"), std::string::npos);
+  EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
 }
 
 TEST(MatchAnswer, an_exceeded_limit_decides_before_a_match_that_was_not_driven) {

@@ -132,13 +132,71 @@ TEST(DecidingSamples, are_predicted_from_a_single_game_too) {
   }
 }
 
-// 600 and 3000 samples are needed after 500: both motors take 1000, the second one then 2000 and 4000.
-TEST(LaterWork, counts_a_motor_until_its_number_is_reached) {
-  const std::array<int, 2> needed{600, 3000};
-  const LaterWork work = later_work(needed, 500, 16'000);
-  EXPECT_EQ(work.evaluations_count, 4.0);
-  EXPECT_EQ(work.samples_count, 2.0 * 1000.0 + 2000.0 + 4000.0);
-  EXPECT_EQ(later_work(needed, 500, 1500).samples_count, 2.0 * 1000.0 + 1500.0);
+// A motor that certainly misses the demand in most games is infeasible, whether or not it is also too hot in most of them.
+TEST(DecidingSamples, of_temperatures_do_not_matter_if_the_demand_is_missed) {
+  MotorEvaluation motor = of_games(38, 75, 74);
+  motor.verdict = Verdict::infeasible;
+  EXPECT_FALSE(samples_needed(motor, *motor.short_interval, true));
+  EXPECT_TRUE(of_games(38, 75, 1).samples_needed);
+}
+
+// Probabilities near a threshold need more games than anybody plays; those far from it are decided with certainty.
+TEST(Prospect, another_round_is_worth_its_time_only_if_it_may_decide) {
+  const int most = 32 * first_samples(true);
+  EXPECT_TRUE(is_worth_another_round(Prospect(of_games(1, 75)), most));
+  EXPECT_FALSE(is_worth_another_round(Prospect(of_games(60, 1200)), most)) << "5 % of 1200";
+  EXPECT_FALSE(is_worth_another_round(Prospect(of_games(0, 75)), most)) << "decided";
+}
+
+// The predicted probability that a later number of games decides is the share of evaluations that it decides.
+TEST(Prospect, decides_with_the_predicted_probability) {
+  constexpr int kGames = 75;
+  constexpr int kTrials = 3000;
+  for (const int over : {1, 3, 30}) {
+    const MotorEvaluation motor = of_games(over, kGames);
+    ASSERT_TRUE(motor.samples_needed) << over;
+    const Prospect prospect(motor);
+    EXPECT_EQ(prospect.decided_probability(motor.samples), 0.0);
+    const boost::math::beta_distribution<> posterior(over + 0.5, kGames - over + 0.5);
+    for (const int games : {150, 600, 2400}) {
+      double decided = 0.0;
+      double passes = 0.0;
+      for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
+        base::Random random(seed, 0);
+        const double share = boost::math::quantile(posterior, random.uniform());
+        const boost::math::binomial_distribution<> later(games - kGames, share);
+        const int all = over + static_cast<int>(boost::math::quantile(later, random.uniform()));
+        decided += of_games(all, games).samples_needed ? 0.0 : 1.0;
+        passes += share <= kMarginalProbability ? 1.0 : 0.0;
+      }
+      const double predicted = prospect.decided_probability(8 * games);
+      const double sd = std::sqrt(0.25 / kTrials);
+      EXPECT_NEAR(decided / kTrials, predicted, 5.0 * sd) << over << " of " << kGames << ", then " << games;
+      EXPECT_NEAR(passes / kTrials, prospect.pass_probability(), 5.0 * sd) << over;
+    }
+  }
+}
+
+// A few games show how far the limit is from the peaks: far above them, near them, or far below.
+TEST(Prospect, of_few_games_follows_the_distance_of_the_limit) {
+  MotorEvaluation few;
+  few.games = 6;
+  few.samples = 48;
+  few.short_probability = 0.0;
+  few.winding_peak_C = {.nominal = 50.0, .p05 = 40.0, .p50 = 50.0, .p95 = 65.0};
+  const auto with_limit = [&](double limit_C) {
+    few.winding_limit_C = limit_C;
+    return Prospect::of_few_games(few, 25.0);
+  };
+  const int first = first_samples(true);
+  EXPECT_GT(with_limit(400.0).decided_probability(first), 0.9);
+  EXPECT_GT(with_limit(400.0).pass_probability(), 0.9);
+  EXPECT_LT(with_limit(65.0).decided_probability(first), 0.5);
+  EXPECT_GT(with_limit(33.0).decided_probability(first), 0.7);
+  EXPECT_LT(with_limit(33.0).pass_probability(), 0.1);
+  few.short_probability = 1.0;
+  EXPECT_EQ(with_limit(400.0).decided_probability(first), 1.0);
+  EXPECT_EQ(with_limit(400.0).pass_probability(), 0.0);
 }
 
 }  // namespace

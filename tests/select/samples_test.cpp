@@ -271,19 +271,27 @@ MotorEvaluation until_decided(double heavy_share) {
   return result;
 }
 
-// A game takes a tenth of a second, so the number of games limits how long an answer takes. No heavy game among 75 decides, and 20 % do.
-// For 37.5 % the upper end of Clopper and Pearson's interval is 0.51 after 75 games and 0.49 after 150: most games pass. 4 % need
-// thousands.
-TEST(UntilDecided, plays_more_games_only_if_few_of_them_decide) {
+// No heavy game among 75 decides, and 20 % do. For 37.5 % the upper end of Clopper and Pearson's interval is 0.51 after 75 games and 0.49
+// after 150: most games pass. 2.5 % need some hundred games.
+TEST(UntilDecided, plays_games_until_they_decide) {
   EXPECT_EQ(until_decided(0.0).games, 75);
   EXPECT_EQ(until_decided(0.2).games, 75);
-  const MotorEvaluation soon = until_decided(0.375);
-  EXPECT_EQ(soon.games, 150);
-  EXPECT_FALSE(soon.samples_needed);
-  const MotorEvaluation late = until_decided(0.04);
-  EXPECT_EQ(late.games, 75);
-  ASSERT_TRUE(late.samples_needed);
-  EXPECT_GT(*late.samples_needed, 8 * 150);
+  EXPECT_EQ(until_decided(0.375).games, 150);
+  const MotorEvaluation late = until_decided(0.025);
+  EXPECT_GE(late.games, 600);
+  for (const double share : {0.0, 0.2, 0.375, 0.025}) {
+    EXPECT_FALSE(until_decided(share).samples_needed) << share;
+  }
+  EXPECT_EQ(late.verdict, Verdict::pass);
+}
+
+// 4.7 % are too close to 5 % for 2400 games: the games end as soon as that is clear.
+TEST(UntilDecided, stops_if_a_decision_is_out_of_reach) {
+  const MotorEvaluation never = until_decided(0.047);
+  EXPECT_LT(never.games, 2400);
+  ASSERT_TRUE(never.samples_needed);
+  EXPECT_GT(*never.samples_needed, 8 * 2400);
+  EXPECT_FALSE(is_decided(never));
 }
 
 TEST(UntilDecided, as_many_games_are_played_as_are_asked_for) {

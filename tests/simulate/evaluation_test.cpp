@@ -81,6 +81,8 @@ TEST(Evaluation, a_motor_of_the_database_is_suggested_only_if_no_chosen_one_pass
 
 TEST(Evaluation, is_undecided_while_more_samples_could_change_a_verdict) {
   EvaluationAnswer answer = run_evaluation(nominal_job("paper_intermittent", {shipped_motor("maxon_ecx_flat_42m_24v")}));
+  EXPECT_TRUE(answer.is_undecided()) << "no samples were drawn";
+  answer.results.front().samples = 500;
   EXPECT_FALSE(answer.is_undecided());
   answer.results.front().samples_needed = 1000;
   EXPECT_TRUE(answer.is_undecided());

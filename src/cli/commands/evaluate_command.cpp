@@ -122,8 +122,8 @@ Command evaluate_command() {
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
         app.add_option("--samples", options->job.samples,
-                       "number of draws of every declared tolerance and range; a match has one game for every eight; 0: nominal only; "
-                       "unless given, as many as decide the verdicts, at most 16000, or 1200 on a match")
+                       "number of draws of every declared tolerance and range; a match has one game for every eight; 0: none, so "
+                       "no verdict over tolerances; unless given, as many as decide the verdicts, at most 16000, or 19200 on a match")
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,

@@ -1,0 +1,79 @@
+#include "present/undecided.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/lanes.h"
+#include "present/verdict_words.h"
+#include "select/decision.h"
+
+namespace heatsoak::present {
+namespace {
+
+std::string_view unit_of(const select::MotorEvaluation& motor) { return motor.games > 0 ? "games" : "samples"; }
+
+/// Returns how many more games or samples decide the verdict, with which probability.
+std::string deciding_words(const select::MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
+  const std::string_view unit = unit_of(motor);
+  const int most = select::most_samples_at_all(is_drawn);
+  const auto [half, nine_in_ten] = select::deciding_samples(motor);
+  const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
+  const auto more = [&](int samples) { return number(samples) - (is_drawn ? motor.games : motor.samples); };
+  if (!half) {
+    return fmt::format("The share is close to the threshold: {} {}, the most that --samples takes ({}), will probably not decide",
+                       number(most), unit, most);
+  }
+  return fmt::format("With a probability of 50 % {} more {} decide (--samples {}), with 90 % {}", more(*half), unit, *half,
+                     nine_in_ten ? fmt::format("{} more (--samples {})", more(*nine_in_ten), *nine_in_ten)
+                                 : fmt::format("over {} (--samples takes {} at most)", number(most), most));
+}
+
+std::string note_on_one(const select::MotorEvaluation& motor) {
+  return fmt::format("{} counts as {} until more {} decide: {}{}. {}.", motor.motor_id, select::to_string(motor.verdict), unit_of(motor),
+                     motor.games > 0 ? fmt::format("in {} games ", motor.games) : "", words_of(*open_share(motor), motor.samples),
+                     deciding_words(motor));
+}
+
+/// The motors that need the fewest samples come first.
+std::string note_on_several(const std::vector<const select::MotorEvaluation*>& motors) {
+  const int most = select::most_samples_at_all(motors.front()->games > 0);
+  const auto shown = [most](const std::optional<int>& samples) { return samples ? fmt::format("{}", *samples) : fmt::format("over {}", most); };
+  std::vector<std::pair<int, std::string>> needs;
+  for (const select::MotorEvaluation* each : motors) {
+    const auto [half, nine_in_ten] = select::deciding_samples(*each);
+    needs.emplace_back(half.value_or(most), half ? fmt::format("{} {} to {}", each->motor_id, shown(half), shown(nine_in_ten))
+                                                 : fmt::format("{} {}", each->motor_id, shown(half)));
+  }
+  std::ranges::stable_sort(needs, {}, &std::pair<int, std::string>::first);
+  std::vector<std::string> words;
+  std::ranges::transform(needs, std::back_inserter(words), &std::pair<int, std::string>::second);
+  return fmt::format(
+      "{} motors are undecided, because the share of their samples over a limit, or short of the demand, is close to a threshold; the "
+      "JSON output has their verdicts so far. Values of --samples that decide with a probability of 50 % to 90 %: {}.",
+      motors.size(), fmt::join(words, "; "));
+}
+
+}  // namespace
+
+void add_undecided_note(Document& document, std::span<const select::MotorEvaluation> results) {
+  std::vector<const select::MotorEvaluation*> undecided;
+  for (const select::MotorEvaluation& each : results) {
+    if (each.samples_needed) {
+      undecided.push_back(&each);
+    }
+  }
+  if (undecided.empty()) {
+    return;
+  }
+  std::string words = undecided.size() == 1 ? note_on_one(*undecided.front()) : note_on_several(undecided);
+  if (const int usual = select::first_samples(undecided.front()->games > 0); undecided.front()->samples < usual) {
+    words += fmt::format(" Without --samples, {} are drawn, and more if needed.", usual);
+  }
+  document.add_note(Severity::warning, words);
+}
+
+}  // namespace heatsoak::present

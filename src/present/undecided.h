@@ -1,0 +1,14 @@
+// Note about the motors whose verdict the samples leave undecided.
+#pragma once
+
+#include <span>
+
+#include "present/document.h"
+#include "select/evaluate.h"
+
+namespace heatsoak::present {
+
+/// Adds one note for all undecided motors: what they count as, and how many samples will probably decide. Adds nothing if all are decided.
+void add_undecided_note(Document& document, std::span<const select::MotorEvaluation> results);
+
+}  // namespace heatsoak::present
