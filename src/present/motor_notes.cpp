@@ -76,6 +76,13 @@ void add_motor_notes(Document& document, std::span<const motor::Motor> motors, N
 std::string doubtful_fits(std::span<const motor::Motor> motors) {
   std::string text;
   for (const motor::Motor& motor : motors) {
+    if (motor.fit && (motor.fit->heat_input == motor::HeatInput::input_power || motor.fit->heat_input == motor::HeatInput::power_balance)) {
+      text += fmt::format(
+          "{}: the thermal values were fitted to heat from measured power ({}). Here no power is measured: the heat is I²·R and the losses "
+          "of the motor file. A loss that only the power showed, such as that of the driver or of hot magnets, is left out, and "
+          "temperatures may be too low\n",
+          motor.id, motor::name_of(*motor.fit->heat_input));
+    }
     if (motor.fit && motor.fit->unmodelled_heat_share) {
       text += fmt::format(
           "{}: the calibration found heat that the model lacks, {} % of the mean heat of its runs or more. Temperatures and allowed "

@@ -28,7 +28,8 @@ std::string columns_at_their_hottest(std::span<const motor::Motor> motors);
 /// Returns a line for each condition that was stated, and for each effect whose condition is unknown: it acts if it heats, not if it cools.
 std::string effects_under_conditions(std::span<const motor::Motor> motors);
 
-/// Returns a line for each motor whose calibration found heat that the model lacks; empty if there is none.
+/// Returns a line for each motor whose calibration found heat that the model lacks, and for each that was fitted to heat from measured
+/// power, which no duty states; empty if there is none.
 std::string doubtful_fits(std::span<const motor::Motor> motors);
 
 /// Returns a line for each motor with a value that got a default spread; empty if there is none.

@@ -32,6 +32,22 @@ TEST(DefaultSpreadsText, AdviceForAFitAsksForNoChangeOfTheFile) {
   EXPECT_THAT(of_fit, AllOf(HasSubstr("thermal_resistance_stator_ambient"), HasSubstr("the file needs no change")));
 }
 
+// A duty states current and speed; a fit to measured power may contain losses that these do not show.
+TEST(DoubtfulFits, TellWhenThermalValuesHoldForMeasuredPower) {
+  motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  motor.fit = motor::MotorFit{};
+  for (const motor::HeatInput heat : {motor::HeatInput::input_power, motor::HeatInput::power_balance}) {
+    motor.fit->heat_input = heat;
+    EXPECT_THAT(doubtful_fits({&motor, 1}), AllOf(HasSubstr(std::string(motor::name_of(heat))), HasSubstr("may be too low")));
+  }
+  for (const motor::HeatInput heat : {motor::HeatInput::current, motor::HeatInput::torque}) {
+    motor.fit->heat_input = heat;
+    EXPECT_EQ(doubtful_fits({&motor, 1}), "");
+  }
+  motor.fit->heat_input.reset();
+  EXPECT_EQ(doubtful_fits({&motor, 1}), "");
+}
+
 TEST(MotorNotes, TheNeighbourIsKnownOnlyWithAllMotorsOfARobot) {
   const motor::Motor motor = derate::ecx_32_with(
       "[effects.plate]\ntype = \"neighbour_coupling\"\n"

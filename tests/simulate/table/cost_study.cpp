@@ -1,4 +1,4 @@
-// Cost of limiting at three levels of aggressiveness: the guard compared with six other methods, one of which knows the true motor.
+// Cost of limiting at three levels of aggressiveness: the guard compared with seven other methods, one of which knows the true motor.
 #include "cost_study.h"
 
 #include <fmt/format.h>
@@ -20,14 +20,15 @@ constexpr std::size_t kMatches = 3;
 constexpr std::size_t kFirstSeed = 11;  ///< the guard's approach time was chosen with the matches of seeds 1 to 3
 constexpr std::size_t kMotors = 9;      ///< motors, each assigned to one of the matches
 
-enum class Method : std::uint8_t { none, sheet_cap, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
+enum class Method : std::uint8_t { none, sheet_cap, sheet_cap_unsensed, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
 struct MethodSpec {
   Method method;
   const char* key;
   const char* name;
 };
-constexpr std::array<MethodSpec, 8> kMethods{{{Method::none, "none", "no limit"},
+constexpr std::array<MethodSpec, 9> kMethods{{{Method::none, "none", "no limit"},
                                               {Method::sheet_cap, "cap_data_sheet", "cap, data sheet's continuous"},
+                                              {Method::sheet_cap_unsensed, "cap_data_sheet_unsensed", "the same cap, nothing sensed"},
                                               {Method::hindsight_cap, "cap_hindsight", "cap found in hindsight"},
                                               {Method::stator_ramp, "stator_ramp", "stator ramp 85 to 100 °C"},
                                               {Method::overload, "i2t", "I²t, data sheet's peak"},
@@ -36,6 +37,7 @@ constexpr std::array<MethodSpec, 8> kMethods{{{Method::none, "none", "no limit"}
                                               {Method::oracle, "oracle", "oracle (true motor)"}}};
 constexpr std::size_t place_of(Method method) { return static_cast<std::size_t>(method); }
 constexpr bool is_guard(Method method) { return method == Method::guard || method == Method::guard_unsensed; }
+constexpr bool has_sensors(Method method) { return method != Method::guard_unsensed && method != Method::sheet_cap_unsensed; }
 
 struct Level {
   std::string name;
@@ -90,18 +92,19 @@ std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::si
 
 Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = base::kUnknown) {
   robot::Robot robot = level.match.robot;
+  // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
   if (method == Method::hindsight_cap) {
-    // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
     robot.drive.current_limit_A = cap_A;
+  } else if (method == Method::sheet_cap_unsensed) {
+    robot.drive.current_limit_A = overload_of(known.motor.nominal).continuous_A;
   }
   const Game& game = game_of(level, i);
-  const bool has_sensors = method != Method::guard_unsensed;
   Hardship hardship;
   if (const std::unique_ptr<Limiter> limiter = make_limiter(method, known, i, robot)) {
-    hardship = drive_hard(level.match, game, limiter->config(robot, known.motor), has_sensors, known.drawn[i], seed_of(i), false);
+    hardship = drive_hard(level.match, game, limiter->config(robot, known.motor), has_sensors(method), known.drawn[i], seed_of(i), false);
   } else {
     const GuardedCore core(robot, known.motor, is_guard(method) ? GuardUse::on : GuardUse::off, known.guard);
-    hardship = drive_hard(level.match, game, core.config(), has_sensors, known.drawn[i], seed_of(i), false);
+    hardship = drive_hard(level.match, game, core.config(), has_sensors(method), known.drawn[i], seed_of(i), false);
   }
   return {hardship.score.winding_peak_C, hardship.score.distance_m, hardship.off_plan_s};
 }
@@ -172,6 +175,7 @@ Cost cost_of(const Cell& cell, Method method) {
 std::string name_of(const Cell& cell, const MethodSpec& spec) {
   switch (spec.method) {
     case Method::sheet_cap:
+    case Method::sheet_cap_unsensed:
       return fmt::format("{}, {:.1f} A", spec.name, overload_of(cell.known->motor.nominal).continuous_A);
     case Method::hindsight_cap:
       return std::isnan(cell.cap_A) ? fmt::format("{}: none needed", spec.name) : fmt::format("{}: {:.1f} A", spec.name, cell.cap_A);
@@ -312,7 +316,8 @@ void study_costs(const Subject& subject, const Report& report) {
   }
   run_all(cells, {Method::none});
   base::in_parallel(cells.size(), 0, [&](std::size_t i) { find_cap(cells[i]); });
-  run_all(cells, {Method::sheet_cap, Method::stator_ramp, Method::overload, Method::guard_unsensed, Method::guard, Method::oracle});
+  run_all(cells, {Method::sheet_cap, Method::sheet_cap_unsensed, Method::stator_ramp, Method::overload, Method::guard_unsensed, Method::guard,
+                  Method::oracle});
 
   const Overload overload = overload_of(subject.motor.nominal);
   std::string text = fmt::format(
