@@ -64,22 +64,22 @@ namespace {
 
 constexpr double kLargestInput = 1e5;
 
-/// Names of the heat inputs in the order of the enumerators.
-constexpr std::array<std::string_view, 4> kHeatInputs{"current", "torque", "input_power", "power_balance"};
+/// Values of `heat_input` in a motor file, in the order of the enumerators.
+constexpr std::array<std::string_view, 4> kHeatInputNames{"current", "torque", "input_power", "power_balance"};
 
 std::optional<HeatInput> read_heat_input(input::Reader& table) {
   const std::optional<std::string> name = table.text("heat_input", input::Need::optional);
   if (!name) {
     return std::nullopt;
   }
-  const auto found = std::ranges::find(kHeatInputs, *name);
-  if (found == kHeatInputs.end()) {
-    const std::vector<std::string> known(kHeatInputs.begin(), kHeatInputs.end());
+  const auto found = std::ranges::find(kHeatInputNames, *name);
+  if (found == kHeatInputNames.end()) {
+    const std::vector<std::string> known(kHeatInputNames.begin(), kHeatInputNames.end());
     table.problem("heat_input",
                   fmt::format("'{}' is unknown; expected one of {}{}", *name, fmt::join(known, ", "), base::did_you_mean(*name, known)));
     return std::nullopt;
   }
-  return static_cast<HeatInput>(found - kHeatInputs.begin());
+  return static_cast<HeatInput>(found - kHeatInputNames.begin());
 }
 
 std::optional<ForecastBand> read_band(input::Reader& table) {
@@ -147,7 +147,7 @@ std::string band_text(const ForecastBand& band) {
 
 }  // namespace
 
-std::string_view name_of(HeatInput heat) { return kHeatInputs[static_cast<std::size_t>(heat)]; }
+std::string_view name_of(HeatInput heat) { return kHeatInputNames[static_cast<std::size_t>(heat)]; }
 
 Correlation::Correlation(std::size_t count) : count_(count), values_(count * count, 0.0) {
   for (std::size_t i = 0; i < count; ++i) {

@@ -97,7 +97,7 @@ Fitness drive_fitness(std::size_t rows, const DataQuality& quality) {
 }  // namespace
 
 const Channel* most_direct_heat_input(const Recording& recording) {
-  for (const std::string_view key : kHeatInputs) {
+  for (const std::string_view key : kHeatColumns) {
     const Channel* const channel = recording.find(key);
     if (channel == nullptr) {
       continue;

@@ -152,7 +152,7 @@ class RowsGivenTwice : public base::Failure {
   std::vector<Pair> pairs_;
 };
 
-/// Returns the first channel of kHeatInputs that varies, the one that heats the winding most directly; nullptr if none varies. Checks
+/// Returns the first channel of kHeatColumns that varies, the one that heats the winding most directly; nullptr if none varies. Checks
 /// compare temperatures with it. The heat of a model is another choice: calibration::heat_input_of().
 const Channel* most_direct_heat_input(const Recording& recording);
 

@@ -34,12 +34,12 @@ std::span<const QuantityType> quantity_types();
 
 /// Heat inputs that checks of a log use as a measure of its heat, most direct first. Other columns of QuantityKind::heat_input, such as
 /// motor_d_V or power_out_W, say less about the heat and are not used for this.
-inline constexpr std::array<std::string_view, 9> kHeatInputs{"current_A", "current_q_A",      "power_in_W", "bus_A",          "torque_Nm",
-                                                             "motor_V",   "modulation_ratio", "bus_V",      "speed_rad_per_s"};
+inline constexpr std::array<std::string_view, 9> kHeatColumns{"current_A", "current_q_A",      "power_in_W", "bus_A",          "torque_Nm",
+                                                              "motor_V",   "modulation_ratio", "bus_V",      "speed_rad_per_s"};
 /// The first ones heat the winding before the iron. Voltages and speed can act without load, and then heat the iron.
-inline constexpr std::size_t kWindingHeatInputs = 5;
+inline constexpr std::size_t kWindingHeatColumns = 5;
 /// The first ones imply that no heat is produced where they are 0. Supply voltage and speed do not: a current may flow at standstill.
-inline constexpr std::size_t kHeatInputsZeroAtRest = 7;
+inline constexpr std::size_t kHeatColumnsZeroAtRest = 7;
 
 /// Quantity of a channel, derived from its name.
 struct Quantity {

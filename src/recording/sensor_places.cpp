@@ -14,8 +14,8 @@ namespace heatsoak::recording {
 namespace {
 
 constexpr std::size_t kEnoughBlocks = 10;
-constexpr std::span kWindingHeats = std::span(kHeatInputs).first<kWindingHeatInputs>();
-constexpr std::span kHeats = std::span(kHeatInputs).first<kHeatInputsZeroAtRest>();
+constexpr std::span kWindingHeats = std::span(kHeatColumns).first<kWindingHeatColumns>();
+constexpr std::span kHeats = std::span(kHeatColumns).first<kHeatColumnsZeroAtRest>();
 
 /// Returns the first of these channels that the log has, even if it is constant; nullptr if there is none.
 const Channel* first_of(const Recording& recording, std::span<const std::string_view> keys) {
