@@ -7,9 +7,10 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 
-#include "base/diagnostic.h"
 #include "base/unit_names.h"
+#include "check/not_evaluated.h"
 
 namespace heatsoak::check {
 namespace {
@@ -66,15 +67,6 @@ std::vector<std::string> names_of(const std::vector<Child>& children) {
     }
   }
   return names;
-}
-
-/// Returns at most twelve of the names, separated by commas.
-std::string names_text(const std::vector<Child>& children) {
-  constexpr std::size_t kMost = 12;
-  std::vector<std::string> names = names_of(children);
-  const bool is_cut = names.size() > kMost;
-  names.resize(std::min(names.size(), kMost));
-  return fmt::format("{}{}", fmt::join(names, ", "), is_cut ? ", …" : "");
 }
 
 /// Keys from the top to a value, and the groups that hold them.
@@ -146,22 +138,19 @@ std::optional<AnswerInterval> interval_of(const Json& group, std::string_view ke
   return std::nullopt;
 }
 
-[[noreturn]] void refuse(const std::string& reason) { throw base::Failure(base::ExitCode::cannot_answer, reason); }
-
 AnswerNumber number_of(const Trail& trail, const Json& value) {
   const std::string name = trail.name();
   if (value.is_object() || value.is_array()) {
-    refuse(value.empty() ? fmt::format("'{}' is empty", name)
-                         : fmt::format("'{}' is no number; expected one of its members: {}", name, names_text(children_of(value))));
+    throw NotEvaluated(NumberIsGroup{name, names_of(children_of(value))});
   }
   if (value.is_null() && std::ranges::find(kNullIsNever, trail.keys.back()) != kNullIsNever.end()) {
     return {.name = name, .value = std::numeric_limits<double>::infinity(), .unit = unit_at(trail)};
   }
   if (value.is_null()) {
-    refuse(fmt::format("'{}' is null: the answer has no value there; expected a number that it has", name));
+    throw NotEvaluated(NumberIsNull{name});
   }
   if (!value.is_number()) {
-    refuse(fmt::format("'{}' is {}; expected a number", name, value.dump(-1, ' ', false, Json::error_handler_t::replace)));
+    throw NotEvaluated(NumberIsOther{name, value.dump(-1, ' ', false, Json::error_handler_t::replace)});
   }
   return {name, value.get<double>(), unit_at(trail), value.is_number_integer(), interval_of(*trail.groups.back(), trail.keys.back())};
 }
@@ -169,6 +158,7 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
 class Search {
  public:
   std::vector<AnswerNumber> found;
+  NumberMissing missing;  ///< at the deepest group that was reached
 
   void at(const Json& value, std::string_view rest) {
     if (rest.empty()) {
@@ -178,10 +168,7 @@ class Search {
     const std::vector<Child> children = children_of(value);
     if (trail_.keys.size() >= deepest_) {
       deepest_ = trail_.keys.size();
-      reached_ = trail_.keys.empty() ? "the answer" : fmt::format("'{}'", trail_.name());
-      const std::string advice = base::did_you_mean(rest.substr(0, rest.find('.')), names_of(children));
-      reached_ += advice.empty() ? fmt::format("; expected one of {}", children.empty() ? "…" : names_text(children)) : advice;
-      missing_ = rest;
+      missing = {std::string(rest), trail_.name(), names_of(children)};
     }
     for (const Child& child : children) {
       // A name may itself contain dots, so the key is not cut off at the next dot.
@@ -203,24 +190,18 @@ class Search {
     }
   }
 
-  [[nodiscard]] std::string missing_text() const { return fmt::format("there is no '{}' in {}", missing_, reached_); }
-
  private:
   Trail trail_;
   std::size_t deepest_ = 0;
-  std::string reached_;
-  std::string_view missing_;
 };
 
 }  // namespace
-
-std::span<const std::string_view> null_is_never() { return kNullIsNever; }
 
 std::vector<AnswerNumber> numbers_at(const Json& answer, std::string_view place) {
   Search search;
   search.at(answer, place);
   if (search.found.empty()) {
-    refuse(search.missing_text());
+    throw NotEvaluated(std::move(search.missing));
   }
   return search.found;
 }

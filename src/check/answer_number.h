@@ -3,33 +3,25 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace heatsoak::check {
+#include "check/basis.h"
 
-/// An end that the answer gives as null is unbounded.
-struct AnswerInterval {
-  std::optional<double> low;
-  std::optional<double> high;
-};
+namespace heatsoak::check {
 
 struct AnswerNumber {
   std::string name;                             ///< place in the answer
-  double value = 0.0;                           ///< infinite for a time that never comes: null of a key of null_is_never()
+  double value = 0.0;                           ///< infinite for a time that never comes: null of some keys
   std::string unit;                             ///< UDUNITS text; "" is a pure number
   bool is_whole = false;                        ///< an integer of the answer: a count or an index, which is no share
   std::optional<AnswerInterval> interval = {};  ///< 95 % interval that the answer gives beside the number
 };
 
-/// Returns the keys of times whose null means that the event never happens.
-std::span<const std::string_view> null_is_never();
-
 /// Returns the numbers at a place: keys joined by ".". An element of a list is named by the value of its first key, its id, name or index,
-/// or if it has none by its place from 0. "*" is every key or element. Throws Failure with the present names if nothing is there, or if
-/// something else than a number is.
+/// or if it has none by its place from 0. "*" is every key or element. Throws NotEvaluated if nothing is there, or if something else
+/// than a number is.
 std::vector<AnswerNumber> numbers_at(const nlohmann::ordered_json& answer, std::string_view place);
 
 }  // namespace heatsoak::check

@@ -395,8 +395,8 @@ class CheckReader {
   /// Reports limits that cannot fail. Needs the motors of the check.
   void compare_with_loosest() {
     for (const Limit& limit : check_.limits) {
-      if (std::string problem = looseness_problem(limit.value, limit.text, *limit.type, check_); !problem.empty()) {
-        limits_->problem(limit.type->name, std::move(problem));
+      if (const std::optional<Looseness> found = looseness(limit.value, limit.text, *limit.type, check_)) {
+        limits_->problem(limit.type->name, problem_of(*found, *limit.type));
       }
     }
   }

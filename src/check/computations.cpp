@@ -71,7 +71,8 @@ std::vector<UsualWork> Computations::usual_work(const Check& check) {
   constexpr double kOther_s = 0.05;
   constexpr double kLog_s = 0.2;
   using Kind = UsualWork::Kind;
-  std::vector<UsualWork> all{{Kind::other, fmt::format("check|{}", check.name), kOther_s + kLog_s * static_cast<double>(check.logs.size())}};
+  std::vector<UsualWork> all{
+      {Kind::other, fmt::format("check|{}", check.name), kOther_s + kLog_s * static_cast<double>(check.logs.size())}};
   if (needs(check, Setting::samples) && check.robot && check.duty) {
     const int games = select::draw_count(*check.duty, check.samples);
     if (games > 0) {
@@ -90,10 +91,10 @@ std::vector<UsualWork> Computations::usual_work(const Check& check) {
   const auto drives = [](const Limit& limit) { return needs_drive(*limit.type); };
   if (needs(check, Setting::derate) && check.robot && check.motor) {
     if (!std::ranges::all_of(check.limits, drives)) {
-      all.push_back({Kind::other,
-                     fmt::format("derating|{}|{}|{}", check.robot->file.string(), key_of(*check.motor),
-                                 derate::options_text(check.derate, 0.0)),
-                     derating_s(check)});
+      all.push_back(
+          {Kind::other,
+           fmt::format("derating|{}|{}|{}", check.robot->file.string(), key_of(*check.motor), derate::options_text(check.derate, 0.0)),
+           derating_s(check)});
     }
     if (check.duty && std::ranges::any_of(check.limits, drives)) {
       all.push_back({Kind::drive, fmt::format("drive|{}|{}", key_of_load(check), key_of(*check.motor)),
@@ -113,9 +114,7 @@ namespace {
 std::shared_ptr<const duty::MatchDuty> required_match(const Check& check) {
   std::shared_ptr<const duty::MatchDuty> match = match_of(check);
   if (!match) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("the drive core can drive only a match; {} is {}. Expected a duty of the shape match", check.duty->id,
-                                    check.duty->shape));
+    throw NotEvaluated(DutyIsNoMatch{check.duty->id, std::string(check.duty->shape)});
   }
   return match;
 }
@@ -155,6 +154,8 @@ void Computations::play_games(const Check& check, const base::Progress& progress
     static_cast<void>(draws(check, progress));
   } catch (const base::Failure&) {
     return;  // kept
+  } catch (const NotEvaluated&) {
+    return;  // kept
   }
 }
 
@@ -175,11 +176,7 @@ const select::MotorEvaluation& Computations::evaluation(const Check& check, cons
 const select::MotorEvaluation& Computations::feasible_evaluation(const Check& check) {
   const select::MotorEvaluation& result = evaluation(check, *check.motor);
   if (result.verdict == select::Verdict::infeasible) {
-    throw base::Failure(base::ExitCode::limit_exceeded,
-                        fmt::format("{} cannot deliver what the duty demands ({}): it delivers {:.0f} % of the "
-                                    "demanded current at the worst moment, and too little for {:.0f} % of the time",
-                                    result.motor_id, select::to_string(result.limiting_factor), 100.0 * result.least_torque_share,
-                                    100.0 * result.short_time_share));
+    throw NotEvaluated(DemandNotDelivered{result.motor_id, result.limiting_factor, result.least_torque_share, result.short_time_share});
   }
   return result;
 }
@@ -196,8 +193,7 @@ const derate::Derating& Computations::derating(const Check& check, const derate:
 const GuardedDrive& Computations::guarded_drive(const Check& check) {
   const std::shared_ptr<const duty::MatchDuty> match = required_match(check);
   if (!check.motor->nominal.rotor_inertia_kg_m2) {
-    throw base::Failure(base::ExitCode::bad_input, fmt::format("{} has no rotor_inertia, which is needed for the acceleration of a wheel",
-                                                               check.motor->file.string()));
+    throw NotEvaluated(RotorInertiaMissing{check.motor->file});
   }
   derate::DerateOptions options = check.derate;
   options.hottest_ambient_C = std::max(options.hottest_ambient_C, check.duty->ambient_C.value);
@@ -216,7 +212,7 @@ const GuardedDrive& Computations::guarded_drive(const Check& check) {
     run.progress = reporting(check, simulate::kDrive_s);
     const simulate::DriveScore score = simulate::run_match(game, *check.robot, *check.motor, core.config(), run).score;
     if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(score)) {
-      throw base::Failure(base::ExitCode::limit_exceeded, fmt::format("the match was not driven: {}", simulate::to_string(*problem)));
+      throw NotEvaluated(MatchNotDriven{*problem});
     }
     return GuardedDrive{score, score.time_s};
   });

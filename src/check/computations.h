@@ -1,6 +1,7 @@
 // Results that thresholds are compared with. Each is computed once and kept for the next threshold that needs it.
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -14,13 +15,15 @@
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "check/check_file.h"
+#include "check/not_evaluated.h"
 #include "derate/derating.h"
 #include "select/evaluate.h"
 #include "simulate/match_run.h"
 
 namespace heatsoak::check {
 
-/// Values by key. The first caller computes the value of a key, others wait for it. A Failure is kept and thrown to every caller.
+/// Values by key. The first caller computes the value of a key, others wait for it. A Failure or NotEvaluated is kept and thrown to every
+/// caller.
 template <class T>
 class Kept {
  public:
@@ -38,12 +41,14 @@ class Kept {
     if (!place->value && !place->failure) {
       try {
         place->value.emplace(make());
-      } catch (const base::Failure& failure) {
-        place->failure.emplace(failure);
+      } catch (const base::Failure&) {
+        place->failure = std::current_exception();
+      } catch (const NotEvaluated&) {
+        place->failure = std::current_exception();
       }
     }
     if (place->failure) {
-      throw base::Failure(*place->failure);
+      std::rethrow_exception(place->failure);
     }
     return *place->value;
   }
@@ -52,7 +57,7 @@ class Kept {
   struct Place {
     std::mutex mutex;
     std::optional<T> value;
-    std::optional<base::Failure> failure;
+    std::exception_ptr failure;
   };
   std::mutex mutex_;
   std::map<std::string, std::unique_ptr<Place>> places_;
@@ -76,8 +81,8 @@ struct UsualWork {
 /// Returns whether the threshold needs Computations::guarded_drive().
 bool needs_drive(const ThresholdType& type);
 
-/// Thread-safe. The check must have the settings that a function reads (ThresholdType::needs). Functions throw Failure with the reason if
-/// there is no result.
+/// Thread-safe. The check must have the settings that a function reads (ThresholdType::needs). Functions throw NotEvaluated or
+/// Failure if there is no result.
 class Computations {
  public:
   /// Called when a part of a check's work is done, which usually takes `work_s` on two cores.
@@ -95,8 +100,8 @@ class Computations {
   /// Returns the evaluation of `motor` alone on the check's robot and duty. `heatsoak evaluate` gives the same numbers, whatever motors it
   /// compares.
   const select::MotorEvaluation& evaluation(const Check& check, const motor::Motor& motor);
-  /// Returns the evaluation of the check's motor. Throws Failure if the motor cannot deliver the demand, because its temperatures are then
-  /// meaningless.
+  /// Returns the evaluation of the check's motor. Throws NotEvaluated if the motor cannot deliver the demand, because its temperatures are
+  /// then meaningless.
   const select::MotorEvaluation& feasible_evaluation(const Check& check);
   /// Returns the number of independent draws: games if the duty is drawn, else samples.
   [[nodiscard]] static int independent_draws(const Check& check);
@@ -109,7 +114,7 @@ class Computations {
   const std::vector<duty::WheelDemand>& draws(const Check& check, const base::Progress& progress = {});
   /// Reports the finished share of a work of `all_s` to worked_.
   [[nodiscard]] base::Progress reporting(const Check& check, double all_s) const;
-  /// Returns the nominal game of a match, which gives the demand and is driven. Throws Failure if the duty is no match.
+  /// Returns the nominal game of a match, which gives the demand and is driven. Throws NotEvaluated if the duty is no match.
   const duty::MatchLoad& nominal_game(const Check& check);
 
   int threads_ = 0;

@@ -109,21 +109,29 @@ std::string bare_limit_problem(std::string_view number, const ThresholdType& typ
   return fmt::format("{} is a bare number; expected a limit as text, such as \"{}\"", number, expected);
 }
 
-std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check) {
+std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check) {
   const std::optional<LoosestLimit> loosest = type.loosest != nullptr ? type.loosest(check) : std::nullopt;
-  if (loosest && !loosest->refusal.empty()) {
-    return loosest->refusal;
+  if (!loosest) {
+    return std::nullopt;
   }
   // The slack absorbs rounding errors: 99.9 % in a file is not exactly 0.999.
   constexpr double kRounding = 1e-9;
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
-  if (!loosest || keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack))) {
-    return {};
+  const bool is_permitted =
+      loosest->refusal.empty() && keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack));
+  return is_permitted ? std::nullopt : std::optional(Looseness{std::string(text), *loosest});
+}
+
+std::string problem_of(const Looseness& found, const ThresholdType& type) {
+  const LoosestLimit& loosest = found.loosest;
+  if (!loosest.refusal.empty()) {
+    return loosest.refusal;
   }
-  if (loosest->always_holds) {
-    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", text, loosest->what, shown(loosest->value, type));
+  if (loosest.always_holds) {
+    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", found.text, loosest.what, shown(loosest.value, type));
   }
-  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", text, loosest->what, shown(loosest->value, type));
+  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", found.text, loosest.what,
+                     shown(loosest.value, type));
 }
 
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {

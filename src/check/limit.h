@@ -23,8 +23,15 @@ std::string unit_of_limit(std::string_view text);
 /// Returns the problem of a limit that is written as a number without words, quotes and unit.
 std::string bare_limit_problem(std::string_view number, const ThresholdType& type);
 
-/// Returns why the limit `text` of `value` is looser than ThresholdType::loosest permits in this check; empty if it is not.
-std::string looseness_problem(double value, std::string_view text, const ThresholdType& type, const Check& check);
+/// A limit that is looser than ThresholdType::loosest permits.
+struct Looseness {
+  std::string text;  ///< text of the limit
+  LoosestLimit loosest;
+};
+/// Returns nothing if the limit `text` of `value` is permitted in this check.
+std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check);
+/// Returns the problem of that limit in a check file.
+std::string problem_of(const Looseness& found, const ThresholdType& type);
 
 /// Returns the limit that --update writes, in `unit`: "at most 158 degC". It lies beyond `measured` by `margin_share` of the value's
 /// distance to its origin, and is rounded so that the value keeps it. Thresholds without room get the value itself.

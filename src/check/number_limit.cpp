@@ -13,6 +13,7 @@
 #include "base/copper.h"
 #include "check/answer_number.h"
 #include "check/limit.h"
+#include "check/not_evaluated.h"
 #include "check/thresholds/peak.h"
 
 namespace heatsoak::check {
@@ -45,22 +46,19 @@ double worse_end(const AnswerNumber& number, Bound direction) {
                                        : number.interval->low.value_or(-kNone);
 }
 
-/// Returns the interval of a number as text, or what is compared instead.
-std::string interval_text(const AnswerNumber& number, const ThresholdType& type) {
+Compared compared_part(const AnswerNumber& number) {
   if (number.interval) {
-    const auto end = [&](const std::optional<double>& value) { return value ? shown(*value, type) : "unknown"; };
-    return fmt::format("{}, its 95 % interval {} to {}", shown(number.value, type), end(number.interval->low), end(number.interval->high));
+    return Compared::interval;
   }
   const std::string_view name = number.name;
   const std::string_view key = name.substr(name.rfind('.') + 1);
-  const bool is_percentile = key.size() == 3 && key[0] == 'p' && std::isdigit(static_cast<unsigned char>(key[1])) != 0;
-  if (is_percentile || key.find("probability") != std::string_view::npos) {
-    return fmt::format("the {} itself is compared: the answer has no interval for it", is_percentile ? "percentile" : "probability");
+  if (key.size() == 3 && key[0] == 'p' && std::isdigit(static_cast<unsigned char>(key[1])) != 0) {
+    return Compared::percentile;
   }
-  if (key == "time_to_limit_s") {
-    return "the time of the nominal motor is compared";
+  if (key.find("probability") != std::string_view::npos) {
+    return Compared::probability;
   }
-  return key == "nominal" ? "the nominal value is compared" : "";
+  return key == "time_to_limit_s" ? Compared::nominal_time : key == "nominal" ? Compared::nominal : Compared::number;
 }
 
 /// Returns the width of the number's 95 % interval; 0 if it has none or it is unbounded.
@@ -69,15 +67,11 @@ double interval_width(const AnswerNumber& number) {
   return is_bounded ? *number.interval->high - *number.interval->low : 0.0;
 }
 
-/// Throws Failure if the limit is a percentage and one of the numbers is a count.
+/// Throws NotEvaluated if the limit is a percentage and one of the numbers is a count.
 void require_share(const Limit& limit, const std::vector<AnswerNumber>& numbers) {
   const auto count = std::ranges::find(numbers, true, &AnswerNumber::is_whole);
   if (limit.type->is_share && count != numbers.end()) {
-    const std::string_view words = to_string(limit.type->direction);
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("\"{}\" is a percentage, but '{}' is a whole number, {:.0f}; expected {} and a number without unit, "
-                                    "such as \"{} {:.0f}\"",
-                                    limit.text, count->name, count->value, words, words, count->value));
+    throw NotEvaluated(NumberIsCount{count->name, count->value});
   }
 }
 
@@ -85,13 +79,11 @@ void require_share(const Limit& limit, const std::vector<AnswerNumber>& numbers)
 std::vector<AnswerNumber> numbers_named(std::string_view name, const nlohmann::ordered_json& answer) {
   try {
     return numbers_at(answer, name);
-  } catch (const base::Failure& failure) {
+  } catch (const NotEvaluated&) {
     if (find_threshold(name) == nullptr) {
       throw;
     }
-    throw base::Failure(failure.code(), fmt::format("'{}' is a threshold, not a number of a command's answer; expected a check with robot, "
-                                                    "duty or motor in place of the command (`heatsoak describe {}`)",
-                                                    name, name));
+    throw NotEvaluated(NumberIsThreshold{std::string(name)});
   }
 }
 
@@ -124,33 +116,28 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   const AnswerNumber& worst = *std::ranges::min_element(numbers, is_worse);
   for (const AnswerNumber& each : numbers) {
     if (each.unit != worst.unit) {
-      throw base::Failure(base::ExitCode::cannot_answer,
-                          fmt::format("'{}' and '{}' have different units; expected a limit for each", worst.name, each.name));
+      throw NotEvaluated(UnitsDiffer{worst.name, each.name});
     }
   }
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share);
   const ParsedLimit parsed = parse_limit(limit.text, *limit.type);
   if (!parsed.problem.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, parsed.problem);
+    throw NotEvaluated(LimitInvalid{parsed.problem});
   }
   limit.value = parsed.value;
   // Only now: a fraction as the limit of a count is permitted, but --update writes none.
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share, worst.is_whole);
   const double value = worse_end(worst, direction);
   if (worst.interval && !std::isfinite(value)) {
-    throw base::Failure(
-        base::ExitCode::cannot_answer,
-        fmt::format("the 95 % interval of '{}' has no {} end, because the answer rests on too few samples; expected more of "
-                    "them (--samples of the command)",
-                    worst.name, direction == Bound::at_most ? "upper" : "lower"));
+    throw NotEvaluated(IntervalUnbounded{worst.name});
   }
-  const std::string compared = interval_text(worst, *limit.type);
-  std::string detail = numbers.size() > 1 ? fmt::format("{}, of {} numbers", worst.name, numbers.size()) : std::string();
-  detail += compared.empty() || detail.empty() ? compared : "; " + compared;
-  const double origin_value = worst.unit == "degC" ? base::kSheetTemperature_C : 0.0;
   return {.value = value,
-          .origin_value = origin_value,
-          .detail = detail,
+          .origin_value = worst.unit == "degC" ? base::kSheetTemperature_C : 0.0,
+          .basis = NumberBasis{.name = worst.name,
+                               .numbers = numbers.size(),
+                               .compared = compared_part(worst),
+                               .value = worst.value,
+                               .interval = worst.interval.value_or(AnswerInterval())},
           .is_never = std::isinf(worst.value),
           .interval_width_value = interval_width(worst)};
 }

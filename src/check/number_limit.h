@@ -23,8 +23,8 @@ struct NumberType {
 std::string parse_number_limit(std::string_view name, std::string_view text, Limit& limit);
 
 /// Returns the number of the answer that the limit names; of several, the one that is nearest to violating it, and of a number with a 95 %
-/// interval its worse end. Converts the limit to the unit of the answer. Throws Failure if there is no such number, or if its unit is
-/// another one.
+/// interval its worse end. Converts the limit to the unit of the answer. Throws NotEvaluated if there is no such number, or if its
+/// unit is another one.
 Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer);
 
 }  // namespace heatsoak::check

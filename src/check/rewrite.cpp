@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "check/limit.h"
 
@@ -40,16 +41,18 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     }
     Limit& limit = outcome.limit;
     if (outcome.measured->is_never) {
-      outcome.reason += outcome.passed ? "" : "; the limit is not rewritten: no time is long enough";
+      outcome.not_rewritten = outcome.passed() ? std::nullopt : std::optional<NotRewritten>(NoTimeSuffices{});
       continue;
     }
     const std::string text = updated_limit(*outcome.measured, *limit.type, limit.unit, margin_share);
     const ParsedLimit parsed = parse_limit(text, *limit.type);
-    const std::string problem =
-        parsed.problem.empty() ? looseness_problem(parsed.value, text, *limit.type, *outcome.check) : parsed.problem;
-    if (!problem.empty()) {
+    if (!parsed.problem.empty()) {
+      outcome.not_rewritten = LimitInvalid{parsed.problem};
+      continue;
+    }
+    if (std::optional<Looseness> found = looseness(parsed.value, text, *limit.type, *outcome.check)) {
       // The limit is not changed, so that a motor above its own limit still fails.
-      outcome.reason += fmt::format("{}the limit is not rewritten: {}", outcome.reason.empty() ? "" : "; ", problem);
+      outcome.not_rewritten = std::move(*found);
       continue;
     }
     if (text == limit.text) {
@@ -65,10 +68,9 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     }
     by_place[begin + 1] = {limit.text.size(), text};
     outcome.before = limit.text;
-    outcome.failed_before = !outcome.passed;
+    outcome.failed_before = !outcome.passed();
     limit.text = text;
     limit.value = parsed.value;
-    judge(outcome);
   }
   std::string result = content;
   for (const auto& [begin, replacement] : by_place) {

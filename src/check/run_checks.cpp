@@ -1,7 +1,5 @@
 #include "check/run_checks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,24 +14,12 @@
 #include "base/parallel.h"
 #include "check/command_answers.h"
 #include "check/computations.h"
-#include "check/limit.h"
 #include "check/number_limit.h"
 #include "robot/robot_lint.h"
 #include "select/round_plan.h"
 
 namespace heatsoak::check {
 namespace {
-
-/// Joins the summary and the diagnostics of a failure in one line.
-std::string reason_of(const base::Failure& failure) {
-  std::string text = failure.message();
-  for (const base::Diagnostic& each : failure.diagnostics()) {
-    const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
-    text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
-                        each.message);
-  }
-  return text;
-}
 
 /// Throws Failure if a file that the threshold depends on does not exist.
 void require_readable(const Check& check, const ThresholdType& type) {
@@ -64,6 +50,8 @@ void drive_ahead(const Check& check, Computations& computations) {
     static_cast<void>(computations.guarded_drive(check));
   } catch (const base::Failure&) {
     return;  // kept, or thrown again
+  } catch (const NotEvaluated&) {
+    return;  // kept, or thrown again
   }
 }
 
@@ -84,14 +72,15 @@ void evaluate_one(Outcome& outcome, Computations& computations, const CommandAns
     if (std::isfinite(measured.value) || measured.is_never) {
       outcome.measured = std::move(measured);
     } else {
-      outcome.reason = "the result is not a number";
+      outcome.reason = ResultNotFinite{};
     }
+  } catch (const NotEvaluated& found) {
+    outcome.reason = found.reason();
   } catch (const base::Failure& failure) {
-    outcome.reason = reason_of(failure);
+    outcome.reason = Failed{failure};
   } catch (const std::bad_alloc&) {
-    outcome.reason = "out of memory";
+    outcome.reason = OutOfMemory{};
   }
-  judge(outcome);
 }
 
 const std::string kPlaying = "playing games";
@@ -197,20 +186,18 @@ std::optional<double> Outcome::margin_value() const {
   return limit.type->direction == Bound::at_most ? limit.value - measured->value : measured->value - limit.value;
 }
 
-void judge(Outcome& outcome) {
-  if (!outcome.measured) {
-    outcome.passed = false;
-    return;
+Status Outcome::status() const {
+  return !measured ? Status::not_evaluated : keeps(limit.type->direction, measured->value, limit.value) ? Status::kept : Status::broken;
+}
+
+OutcomeCounts count(std::span<const Outcome> outcomes) {
+  OutcomeCounts counts;
+  for (const Outcome& each : outcomes) {
+    ++counts.all;
+    counts.broken += each.status() == Status::broken ? 1 : 0;
+    counts.not_evaluated += each.status() == Status::not_evaluated ? 1 : 0;
   }
-  const ThresholdType& type = *outcome.limit.type;
-  outcome.passed = keeps(type.direction, outcome.measured->value, outcome.limit.value);
-  if (outcome.measured->is_never && !outcome.passed) {
-    outcome.reason = fmt::format("it never happens; expected it within {}", shown(outcome.limit.value, type));
-    return;
-  }
-  outcome.reason = outcome.passed ? std::string()
-                                  : fmt::format("{} is {} the limit of {}", shown(outcome.measured->value, type),
-                                                type.direction == Bound::at_most ? "above" : "below", shown(outcome.limit.value, type));
+  return counts;
 }
 
 std::vector<Outcome> run_checks(const CheckFile& file, int threads, const CommandAnswers& answers, const base::JobProgress& progress) {
@@ -219,7 +206,7 @@ std::vector<Outcome> run_checks(const CheckFile& file, int threads, const Comman
   for (const Check& check : file.checks) {
     const std::size_t first = outcomes.size();
     for (const Limit& limit : check.limits) {
-      outcomes.push_back({.check = &check, .limit = limit, .reason = {}});
+      outcomes.push_back({.check = &check, .limit = limit});
     }
     ranges.emplace_back(first, outcomes.size());
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parameter.h"
+#include "check/basis.h"
 
 namespace heatsoak::check {
 
@@ -50,8 +51,8 @@ std::span<const SettingText> all_settings();
 struct Measured {
   double value = 0.0;         ///< in the unit of the threshold
   double origin_value = 0.0;  ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
-  std::string detail = {};    ///< basis of the value, one line for people; may be empty
-  bool is_never = false;      ///< the event never happens, so that its time, the value, is infinite
+  Basis basis = {};
+  bool is_never = false;  ///< the event never happens, so that its time, the value, is infinite
   double interval_width_value =
       0.0;  ///< width of the value's 95 % interval; --update leaves a share of it as room if it exceeds the distance
 };
@@ -82,7 +83,7 @@ struct ThresholdType {
   std::vector<Setting> takes = {};  ///< optional settings that change the value
   /// Returns the loosest permitted limit; nothing if every limit in `range` is permitted. Null has the same meaning.
   std::optional<LoosestLimit> (*loosest)(const Check& check) = nullptr;
-  /// Computes the value. Throws Failure with the reason if it cannot be determined.
+  /// Computes the value. Throws NotEvaluated or Failure if it cannot be determined.
   Measured (*measure)(const Check& check, Computations& computations) = nullptr;
 };
 

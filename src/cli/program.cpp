@@ -18,13 +18,13 @@
 
 #include "base/files.h"
 #include "base/version.h"
-#include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/commands_registry.h"
 #include "cli/help_text.h"
 #include "cli/terminal.h"
 #include "cli/usage.h"
 #include "input/document.h"
+#include "present/github.h"
 #include "present/json.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
@@ -141,7 +141,7 @@ std::string annotations_of(const base::Failure& failure) {
   std::string text;
   for (const base::Diagnostic& each : failure.diagnostics()) {
     if (each.at.line > 0 && environment("GITHUB_ACTIONS") == "true") {
-      text += check::annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
+      text += present::annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
     }
   }
   return text;

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "check/check_text.h"
-#include "check/limit.h"
+#include "present/check_words.h"
 #include "present/robot_notes.h"
 
 namespace heatsoak::present {
@@ -13,7 +12,7 @@ namespace {
 
 std::vector<Text> conclusion(std::span<const check::Outcome> outcomes, bool is_update) {
   const bool all_pass = std::ranges::all_of(outcomes, &check::Outcome::passed);
-  std::vector<Text> text{{check::conclusion_text(outcomes), all_pass ? Tone::good : Tone::bad}};
+  std::vector<Text> text{{conclusion_words(outcomes), all_pass ? Tone::good : Tone::bad}};
   if (is_update) {
     const auto changed = std::ranges::count_if(outcomes, [](const check::Outcome& each) { return !each.before.empty(); });
     text.push_back({fmt::format("{} limit{} rewritten", changed, changed == 1 ? "" : "s")});
@@ -22,8 +21,8 @@ std::vector<Text> conclusion(std::span<const check::Outcome> outcomes, bool is_u
 }
 
 Table table_of(const check::Check& check) {
-  const std::string things = check::things_of(check);
-  return {.title = things.empty() ? check.name : fmt::format("{} ({})", check.name, things),
+  const std::string subject = subject_words(check);
+  return {.title = subject.empty() ? check.name : fmt::format("{} ({})", check.name, subject),
           .columns = {{"", "", 0, Alignment::left},
                       {"threshold", "", 0, Alignment::left},
                       {"value", "", 0},
@@ -31,6 +30,18 @@ Table table_of(const check::Check& check) {
                       {"margin", "", 1},
                       {"", "", 0, Alignment::left, 0, true}},
           .rows = {}};
+}
+
+Text status_cell(check::Status status) {
+  switch (status) {
+    case check::Status::kept:
+      return {"ok", Tone::good};
+    case check::Status::broken:
+      return {"FAIL", Tone::bad};
+    case check::Status::not_evaluated:
+      return {"ERROR", Tone::bad};
+  }
+  return {};
 }
 
 }  // namespace
@@ -43,22 +54,19 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
       document.tables.push_back(table_of(*each.check));
       before = each.check;
     }
-    std::string why = check::explanation(each);
-    if (!each.passed) {
+    std::string why = explanation_words(each);
+    if (!each.passed()) {
       const base::Location& at = each.limit.at;
       why = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, why);
     }
     if (!each.before.empty()) {
       why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
     }
-    document.tables.back().rows.push_back({{each.passed     ? "ok"
-                                            : each.measured ? "FAIL"
-                                                            : "ERROR",
-                                            each.passed ? Tone::good : Tone::bad},
+    document.tables.back().rows.push_back({status_cell(each.status()),
                                            {std::string(each.limit.type->name)},
-                                           {check::value_text(each)},
-                                           {check::limit_text(each)},
-                                           {check::margin_text(each)},
+                                           {value_words(each)},
+                                           {limit_words(each)},
+                                           {margin_words(each)},
                                            {std::move(why)}});
   }
   for (const check::Outcome& each : outcomes) {

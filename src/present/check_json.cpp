@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "present/check.h"
+#include "present/check_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -19,10 +20,10 @@ Json json(const check::Outcome& each) {
           {"limit", rounded(each.limit.value, 6)},
           {"margin", rounded(each.margin_value(), 6)},
           {"unit", type.unit},
-          {"passed", each.passed},
+          {"passed", each.passed()},
           {"evaluated", each.measured.has_value()},
-          {"reason", each.reason},
-          {"detail", each.measured ? each.measured->detail : ""},
+          {"reason", reason_words(each)},
+          {"detail", basis_words(each)},
           {"limit_before", each.before.empty() ? Json() : Json(each.before)},
           {"file", each.limit.at.file},
           {"line", each.limit.at.line},

@@ -9,6 +9,7 @@
 #include "check/command_answers.h"
 #include "check/rewrite.h"
 #include "check/run_checks.h"
+#include "check/typed_outcome.h"
 #include "support/source_folder.h"
 
 namespace heatsoak::check {
@@ -130,12 +131,13 @@ TEST_F(CheckFiles, APercentileIsComparedByItsBound) {
     return outcomes(kHead + fmt::format("samples = \"{}\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n", samples)).front();
   };
   const Outcome few = found(71);
-  EXPECT_FALSE(few.passed);
-  EXPECT_THAT(few.reason, HasSubstr("72 samples or more"));
+  EXPECT_FALSE(few.passed());
+  EXPECT_TRUE(reason_of<TooFewSamples>(few));
   const Outcome some = found(80);
   const Outcome many = found(2000);
   EXPECT_GT(some.measured->value, many.measured->value);
-  EXPECT_THAT(many.measured->detail, HasSubstr("97.5 % confidence"));
+  EXPECT_EQ(basis_of<PeakBasis>(many).bound_C, many.measured->value);
+  EXPECT_LT(basis_of<PeakBasis>(many).p95_C, many.measured->value);
 }
 
 TEST_F(CheckFiles, SettingThatNoLimitUsesIsAProblem) {
@@ -186,11 +188,11 @@ TEST_F(CheckFiles, WhatCannotBeEvaluatedFailsAndTheRestIsEvaluated) {
                                               "guard_active_share = \"at most 0 %\"\n"
                                               "winding_peak_p95 = \"at most 120 degC\"\n");
   ASSERT_EQ(found.size(), 3U);
-  EXPECT_FALSE(found[0].passed);
+  EXPECT_FALSE(found[0].passed());
   EXPECT_FALSE(found[0].measured);
-  EXPECT_THAT(found[0].reason, HasSubstr("missing.h: cannot be read: No such file"));
-  EXPECT_THAT(found[1].reason, HasSubstr("the drive core can drive only a match"));
-  EXPECT_TRUE(found[2].passed);
+  EXPECT_THAT(failure_of(found[0]), HasSubstr("missing.h: error: cannot be read: No such file"));
+  EXPECT_TRUE(reason_of<DutyIsNoMatch>(found[1]));
+  EXPECT_TRUE(found[2].passed());
 }
 
 TEST_F(CheckFiles, ForecastErrorNeedsTheAirOfALogWithoutIt) {
@@ -203,7 +205,7 @@ TEST_F(CheckFiles, ForecastErrorNeedsTheAirOfALogWithoutIt) {
   const std::string limits = "[check.limits]\nforecast_error = \"at most 90 K\"\n";
   const Outcome without = outcomes(check + limits).front();
   EXPECT_FALSE(without.measured);
-  EXPECT_THAT(without.reason, HasSubstr("the log has no ambient temperature"));
+  EXPECT_THAT(failure_of(without), HasSubstr("the log has no ambient temperature"));
   EXPECT_TRUE(outcomes(check + "air = \"25 degC\"\n" + limits).front().measured);
 }
 
@@ -212,12 +214,13 @@ TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
     return outcomes(kHead + fmt::format("samples = \"{}\"\n[check.limits]\nprobability_over_limit = \"{}\"\n", samples, limit)).front();
   };
   const Outcome few = with(32, "at most 5 %");
-  EXPECT_FALSE(few.passed);
+  EXPECT_FALSE(few.passed());
   EXPECT_TRUE(few.measured);
   EXPECT_NEAR(few.measured->value, 1.0 - std::pow(0.05, 1.0 / 32.0), 1e-9);
-  EXPECT_THAT(few.measured->detail, HasSubstr("59 samples or more"));
-  EXPECT_TRUE(with(64, "at most 5 %").passed);
-  EXPECT_FALSE(with(64, "at most 4 %").passed);
+  EXPECT_EQ(basis_of<ShareBasis>(few).samples_needed, 59);
+  EXPECT_FALSE(basis_of<ShareBasis>(few).games);
+  EXPECT_TRUE(with(64, "at most 5 %").passed());
+  EXPECT_FALSE(with(64, "at most 4 %").passed());
 }
 
 // All samples of one game share its load, so the number of games counts.
@@ -231,8 +234,9 @@ TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
   };
   const Outcome found = with("at most 5 %");
   EXPECT_NEAR(found.measured->value, 1.0 - std::sqrt(0.05), 1e-9);
-  EXPECT_THAT(found.measured->detail, testing::AllOf(HasSubstr("by 2 games"), HasSubstr("472 samples or more")));
-  EXPECT_THAT(with("at most 0.1 %").measured->detail, HasSubstr("23960 samples or more"));
+  EXPECT_EQ(basis_of<ShareBasis>(found).games, 2);
+  EXPECT_EQ(basis_of<ShareBasis>(found).samples_needed, 472);
+  EXPECT_EQ(basis_of<ShareBasis>(with("at most 0.1 %")).samples_needed, 23960);
 }
 
 // The guard assumes the hottest air that it is designed for, whatever air temperature the match has.
@@ -242,9 +246,9 @@ TEST_F(CheckFiles, GuardMadeForHotAirEngages) {
       "\"maxon_ecx_flat_32l_48v\"\nderate = { samples = \"60\", ambient = \"105 degC\" }\n[check.limits]\nguard_active_share = \"at "
       "most 0 %\"\nguard_missing_charge = \"at most 0 A s\"\n");
   for (const Outcome& each : found) {
-    EXPECT_TRUE(each.measured) << each.reason;
+    EXPECT_TRUE(each.measured) << each.limit.text;
     EXPECT_GT(each.measured->value, 0.0);
-    EXPECT_FALSE(each.passed);
+    EXPECT_FALSE(each.passed());
   }
   EXPECT_LT(found[0].measured->value, 1.0);
 }
@@ -256,17 +260,18 @@ TEST_F(CheckFiles, LintFindsWhatAFileOfAnyKindHolds) {
                (kSource / "robot_core/robots/tigers_v2020.toml").string() + "\", \"" +
                (kSource / "duty_profiles/division_a_match.toml").string() + "\"]\n[check.limits]\nlint_problems = \"at most 0\"\n");
   EXPECT_GE(found.front().measured->value, 2.0);
-  EXPECT_FALSE(found.front().passed);
-  EXPECT_THAT(found.front().measured->detail, HasSubstr("lint_df45l_wiki.toml:"));
+  EXPECT_FALSE(found.front().passed());
+  EXPECT_THAT(basis_of<LintBasis>(found.front()).first.at.file, HasSubstr("lint_df45l_wiki.toml"));
 }
 
 TEST_F(CheckFiles, MotorThatCannotDeliverFailsWithTheReason) {
   const std::vector<Outcome> found = outcomes(
       "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_dcx19s_24v\"\n"
       "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 100 degC\"\nlint_problems = \"at most 0\"\n");
-  EXPECT_FALSE(found[0].passed);
-  EXPECT_THAT(found[0].reason, HasSubstr("cannot deliver what the duty demands"));
-  EXPECT_TRUE(found[1].passed);
+  EXPECT_FALSE(found[0].passed());
+  ASSERT_TRUE(reason_of<DemandNotDelivered>(found[0]));
+  EXPECT_LT(reason_of<DemandNotDelivered>(found[0])->least_torque_share, 1.0);
+  EXPECT_TRUE(found[1].passed());
 }
 
 TEST_F(CheckFiles, TimeAboveATemperatureFallsWithIt) {
@@ -296,8 +301,9 @@ TEST_F(CheckFiles, RankCountsThoseBeforeTheMotor) {
   EXPECT_EQ(rank("nanotec_df45l024048_a2", best + ", " + worst).measured->value, 2.0);
   const Outcome last = rank("maxon_ecx_flat_32l_48v", best + ", \"nanotec_df45l024048_a2\"");
   EXPECT_EQ(last.measured->value, 3.0);
-  EXPECT_FALSE(last.passed);
-  EXPECT_THAT(last.measured->detail, HasSubstr("maxon_ecx_flat_42m_24v, nanotec_df45l024048_a2"));
+  EXPECT_FALSE(last.passed());
+  EXPECT_EQ(basis_of<RankBasis>(last).motors, 3U);
+  EXPECT_THAT(basis_of<RankBasis>(last).better, testing::ElementsAre("maxon_ecx_flat_42m_24v", "nanotec_df45l024048_a2"));
 }
 
 TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
@@ -320,11 +326,11 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
                      "winding_peak_p95=\"at most 30 degC\"# too tight\r\n"
                      "guard_active_share = \"at most 1 %\"\r\n";
   std::vector<Outcome> found = outcomes(text);
-  EXPECT_FALSE(found[1].passed);
+  EXPECT_FALSE(found[1].passed());
   const std::string after = with_new_limits(text, found, 0.05);
-  EXPECT_TRUE(found[0].passed);
-  EXPECT_TRUE(found[1].passed);
-  EXPECT_FALSE(found[2].passed);
+  EXPECT_TRUE(found[0].passed());
+  EXPECT_TRUE(found[1].passed());
+  EXPECT_FALSE(found[2].passed());
   EXPECT_EQ(found[1].before, "at most 30 degC");
   std::string expected = text;
   for (const Outcome& each : {found[0], found[1]}) {
@@ -334,8 +340,8 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   EXPECT_NE(after, text);
   // A second run writes the same file, and all its limits hold.
   std::vector<Outcome> again = outcomes(after);
-  EXPECT_TRUE(again[0].passed);
-  EXPECT_TRUE(again[1].passed);
+  EXPECT_TRUE(again[0].passed());
+  EXPECT_TRUE(again[1].passed());
   EXPECT_EQ(with_new_limits(after, again, 0.05), after);
 }
 
@@ -433,10 +439,10 @@ TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
   for (const std::vector<Outcome>& each : all) {
     ASSERT_EQ(each.size(), 2U);
     EXPECT_FALSE(each[0].measured);
-    EXPECT_FALSE(each[0].passed);
-    EXPECT_THAT(each[0].reason, testing::EndsWith("gone.toml: cannot be read: No such file or directory"));
-    EXPECT_THAT(each[0].reason, testing::ContainsRegex("a.check.toml:[0-9]:[0-9]+: ")) << "place of the name";
-    EXPECT_TRUE(each[1].passed);
+    EXPECT_FALSE(each[0].passed());
+    EXPECT_THAT(failure_of(each[0]), testing::EndsWith("gone.toml: cannot be read: No such file or directory"));
+    EXPECT_THAT(failure_of(each[0]), testing::ContainsRegex("a.check.toml:[0-9]:[0-9]+: ")) << "place of the name";
+    EXPECT_TRUE(each[1].passed());
   }
   const std::vector<std::vector<Outcome>> unknown{found(robot + duty + "motor = \"maxon_ecx_flat_42m_24w\"\n", peak),
                                                   found("robot = \"roboteam_twente_v2023\"\n" + duty, peak),
@@ -445,9 +451,9 @@ TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
   const std::vector<std::string> meant{"maxon_ecx_flat_42m_24v", "roboteam_twente_v2024", "paper_intermittent", "nanotec_df45l024048_a2"};
   for (std::size_t i = 0; i < meant.size(); ++i) {
     ASSERT_EQ(unknown[i].size(), 2U);
-    EXPECT_FALSE(unknown[i][0].passed);
-    EXPECT_THAT(unknown[i][0].reason, testing::AllOf(HasSubstr("there is no "), HasSubstr(fmt::format("did you mean '{}'?", meant[i]))));
-    EXPECT_TRUE(unknown[i][1].passed);
+    EXPECT_FALSE(unknown[i][0].passed());
+    EXPECT_THAT(failure_of(unknown[i][0]), testing::AllOf(HasSubstr("there is no "), HasSubstr(fmt::format("did you mean '{}'?", meant[i]))));
+    EXPECT_TRUE(unknown[i][1].passed());
   }
 }
 
@@ -480,8 +486,8 @@ TEST_F(CheckFiles, UpdateDoesNotPassAMotorAboveItsLimit) {
   std::vector<Outcome> found = outcomes(text);
   ASSERT_GT(found[0].measured->value, 155.0);
   EXPECT_EQ(with_new_limits(text, found, 0.05), text);
-  EXPECT_FALSE(found[0].passed);
-  EXPECT_THAT(found[0].reason, HasSubstr("the limit is not rewritten"));
+  EXPECT_FALSE(found[0].passed());
+  EXPECT_TRUE(std::holds_alternative<Looseness>(found[0].not_rewritten.value()));
 }
 
 TEST_F(CheckFiles, LimitWithAnEscapeIsNotRewritten) {

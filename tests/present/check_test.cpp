@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <limits>
 #include <sstream>
 
 #include "present/renderer.h"
@@ -21,22 +20,19 @@ class CheckAnswer : public testing::Test {
   CheckAnswer() {
     checks_[0].name = "robot at the tournament";
     checks_[1].name = "second";
-    add(0, "winding_peak_p95", 100.0, 90.0, true, "");
-    outcomes_.back().measured->detail =
-        "nominal 47.0 °C, median 47.2 °C, 500 samples of all declared tolerances and the wheel front_left of it, 10 A";
-    add(0, "current_margin", 1.0, 0.5, true, "0.5 A is below the limit of 1 A");
-    outcomes_.back().measured->detail = "hottest wheel";
-    add(1, "derating_excess", 0.0, std::numeric_limits<double>::quiet_NaN(), false, "guard.h:3:1: has no table");
+    add(0, "winding_peak_p95", 100.0).measured = {
+        .value = 90.0,
+        .basis =
+            check::PeakBasis{.p95_C = 80.0, .bound_C = 90.0, .nominal_C = 47.0, .median_C = 47.2, .samples = 500, .wheel = "front_left"}};
+    add(0, "current_margin", 1.0).measured = {.value = 0.5, .basis = check::MarginBasis{3.0}};
+    add(1, "derating_excess", 0.0).reason =
+        check::Failed{base::Failure(base::ExitCode::bad_input, "", {{{"guard.h", 3, 1}, {}, "has no table"}})};
   }
 
-  void add(std::size_t check, std::string_view threshold, double limit, double value, bool is_evaluated, std::string reason) {
-    check::Outcome outcome;
-    outcome.check = &checks_.at(check);
-    outcome.limit = {check::find_threshold(threshold), limit, "", "", {"/repository/robot.toml", 10, 5}};
-    outcome.measured = is_evaluated ? std::optional(check::Measured{value, 0.0, ""}) : std::nullopt;
-    outcome.passed = reason.empty();
-    outcome.reason = std::move(reason);
-    outcomes_.push_back(std::move(outcome));
+  check::Outcome& add(std::size_t check, std::string_view threshold, double limit) {
+    outcomes_.push_back(
+        {.check = &checks_.at(check), .limit = {check::find_threshold(threshold), limit, "", "", {"/repository/robot.toml", 10, 5}}});
+    return outcomes_.back();
   }
 
   std::array<check::Check, 2> checks_;

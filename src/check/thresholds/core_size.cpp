@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "check/computations.h"
 #include "firmware/core_files.h"
 
@@ -17,7 +15,7 @@ Measured measure_core_size(const Check& check, Computations& computations) {
   for (const firmware::CoreFile& file : folder.files) {
     size_byte += static_cast<double>(firmware::code_bytes(file.path, file.content));
   }
-  return {size_byte, 0.0, fmt::format("{} files, guard table of {} bytes", folder.files.size(), derating.table.size_bytes())};
+  return {size_byte, 0.0, CoreSizeBasis{folder.files.size(), derating.table.size_bytes()}};
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include "check/computations.h"
+#include "check/not_evaluated.h"
 
 namespace heatsoak::check::thresholds {
 namespace {
@@ -8,10 +7,9 @@ namespace {
 Measured measure_current_margin(const Check& check, Computations& computations) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   if (!result.margin_A) {
-    throw base::Failure(base::ExitCode::cannot_answer,
-                        "no factor on the load brings the motor to its limit, so there is no margin to compare");
+    throw NotEvaluated(LimitNeverReached{});
   }
-  return {*result.margin_A, 0.0, fmt::format("the duty takes {:.2f} A rms, nominal motor", result.current_rms_A)};
+  return {*result.margin_A, 0.0, MarginBasis{result.current_rms_A}};
 }
 
 }  // namespace

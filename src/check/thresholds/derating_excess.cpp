@@ -6,18 +6,9 @@ namespace {
 Measured measure_derating_excess(const Check& check, Computations& computations) {
   const derate::TableComparison found = compared(check, computations);
   if (!found.differing.empty()) {
-    const derate::HeaderDifference& first = found.differing.front();
-    throw base::Failure(
-        base::ExitCode::limit_exceeded,
-        fmt::format("{}:{}: the observer differs from that of a fresh header in {} places, so the table has another meaning: \"{}\", "
-                    "fresh \"{}\"; `heatsoak derate --check {}` lists them; generate the header again",
-                    check.table.string(), first.line, found.differing.size(), first.text, first.other_text, check.table.string()));
+    throw NotEvaluated(ObserverDiffers{check.table, found.differing.front(), found.differing.size()});
   }
-  std::string detail = place_text(found.excess);
-  if (found.lost.difference_A > 0.0) {
-    detail += fmt::format("{}allows up to {:.3f} A less elsewhere", detail.empty() ? "" : "; ", found.lost.difference_A);
-  }
-  return {found.excess.difference_A, 0.0, detail.empty() ? fmt::format("within {} of a fresh table", derate::kIgnored) : detail};
+  return {found.excess.difference_A, 0.0, ExcessBasis{found.excess, found.lost.difference_A}};
 }
 
 }  // namespace

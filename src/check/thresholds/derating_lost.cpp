@@ -15,7 +15,7 @@ ThresholdType derating_lost() {
           .loosest = largest_difference,
           .measure = [](const Check& check, Computations& computations) -> Measured {
             const derate::TablePlace lost = compared(check, computations).lost;
-            return {lost.difference_A, 0.0, place_text(lost)};
+            return {lost.difference_A, 0.0, LostBasis{lost}};
           }};
 }
 

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "check/computations.h"
 #include "select/evaluate.h"
 
@@ -9,8 +7,10 @@ namespace {
 Measured measure_guard_active_share(const Check& check, Computations& computations) {
   const GuardedDrive& drive = computations.guarded_drive(check);
   return {drive.score.guard_limited_s / drive.duration_s, 0.0,
-          fmt::format("{:.1f} of {:.0f} s; its observer reached {:.1f} °C, the winding {:.1f} °C", drive.score.guard_limited_s,
-                      drive.duration_s, drive.score.guard_winding_peak_C, drive.score.winding_peak_C)};
+          GuardShareBasis{.limited_s = drive.score.guard_limited_s,
+                          .duration_s = drive.duration_s,
+                          .observer_peak_C = drive.score.guard_winding_peak_C,
+                          .winding_peak_C = drive.score.winding_peak_C}};
 }
 
 }  // namespace

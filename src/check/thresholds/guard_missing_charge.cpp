@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include "check/computations.h"
 #include "check/thresholds/duty_duration.h"
 
@@ -8,8 +6,7 @@ namespace {
 
 Measured measure_guard_missing_charge(const Check& check, Computations& computations) {
   const GuardedDrive& drive = computations.guarded_drive(check);
-  return {drive.score.guard_missing_A_s, 0.0,
-          fmt::format("the guard would limit for {:.1f} of {:.0f} s", drive.score.guard_limited_s, drive.duration_s)};
+  return {drive.score.guard_missing_A_s, 0.0, GuardChargeBasis{drive.score.guard_limited_s, drive.duration_s}};
 }
 
 /// The guard cannot take away more than the largest current of all wheels during the whole duty.

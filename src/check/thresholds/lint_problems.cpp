@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "check/computations.h"
@@ -45,9 +43,7 @@ Measured measure_lint_problems(const Check& check, Computations& /*computations*
   const std::vector<motor::LintFinding> all = findings_of(check);
   const auto count = std::ranges::count_if(all, is_problem);
   const auto first = std::ranges::find_if(all, is_problem);
-  return {static_cast<double>(count), 0.0,
-          first == all.end() ? std::string()
-                             : fmt::format("{}:{}:{}: {}", first->at.file, first->at.line, first->at.column, motor::words_of(*first))};
+  return {static_cast<double>(count), 0.0, first == all.end() ? Basis() : LintBasis{*first}};
 }
 
 /// Files with as many problems as a motor file has values are no data.

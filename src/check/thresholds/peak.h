@@ -1,11 +1,10 @@
 // Shared parts of the thresholds on peak temperatures.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "check/computations.h"
+#include "check/not_evaluated.h"
 
 namespace heatsoak::check::thresholds {
 
@@ -19,24 +18,23 @@ std::optional<LoosestLimit> own_limit(const Check& check, Member motor::MotorVal
   return own_C ? std::optional<LoosestLimit>({*own_C, what}) : std::nullopt;
 }
 
-/// Returns the upper end of the 95 % interval of a peak's 95th percentile; the origin is the air temperature. Throws Failure if there are
-/// too few samples for an interval.
+/// Returns the upper end of the 95 % interval of a peak's 95th percentile; the origin is the air temperature. Throws NotEvaluated if there
+/// are too few samples for an interval.
 inline Measured measured_peak(const Check& check, Computations& computations, select::Spread95 select::MotorEvaluation::*peak,
                               std::optional<select::Interval95> select::MotorEvaluation::*interval) {
   const select::MotorEvaluation& result = computations.feasible_evaluation(check);
   const select::Spread95& peak_C = result.*peak;
   const std::optional<select::Interval95>& bounds_C = result.*interval;
   if (!bounds_C || !peak_C.p50 || !peak_C.p95 || !std::isfinite(bounds_C->high)) {
-    throw base::Failure(
-        base::ExitCode::bad_input,
-        fmt::format("a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}. Set "
-                    "samples = \"500\", or leave it out",
-                    check.samples));
+    throw NotEvaluated(TooFewSamples{check.samples});
   }
-  return {
-      bounds_C->high, check.duty->ambient_C.value,
-      fmt::format("percentile {:.1f} °C, its bound with 97.5 % confidence {:.1f} °C; nominal {:.1f} °C, median {:.1f} °C, {} samples, {}",
-                  *peak_C.p95, bounds_C->high, peak_C.nominal, *peak_C.p50, check.samples, result.wheel)};
+  return {bounds_C->high, check.duty->ambient_C.value,
+          PeakBasis{.p95_C = *peak_C.p95,
+                    .bound_C = bounds_C->high,
+                    .nominal_C = peak_C.nominal,
+                    .median_C = *peak_C.p50,
+                    .samples = check.samples,
+                    .wheel = result.wheel}};
 }
 
 }  // namespace heatsoak::check::thresholds

@@ -1,25 +1,17 @@
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
 
 #include "base/binomial_bound.h"
-#include "base/quantity.h"
 #include "check/computations.h"
 
 namespace heatsoak::check::thresholds {
 namespace {
 
-constexpr double kConfidence = 0.95;
+constexpr double kConfidence_share = 0.95;
 
-/// Returns a phrase with the number of samples that could show the limit to be kept.
-std::string what_would_do(const Check& check, double over_share, double limit_share, int draws) {
-  const std::optional<long> needed = base::draws_needed(over_share, limit_share, kConfidence);
-  if (!needed) {
-    return "no number of samples can meet the limit with this share";
-  }
-  const bool is_drawn = draws != check.samples;
-  const long per_draw = is_drawn ? (check.samples + draws - 1) / draws : 1;
-  return fmt::format("{} samples or more could meet {} % with this share", *needed * per_draw, base::significant(100.0 * limit_share, 3));
+/// Returns the limit of the check, as a share.
+double limit_of(const Check& check) {
+  return std::ranges::find(check.limits, "probability_over_limit", [](const Limit& limit) { return limit.type->name; })->value;
 }
 
 Measured measure_probability_over_limit(const Check& check, Computations& computations) {
@@ -27,20 +19,17 @@ Measured measure_probability_over_limit(const Check& check, Computations& comput
   const int draws = Computations::independent_draws(check);
   const bool is_drawn = draws != check.samples;
   const double share = result.probability_over_limit.value();
-  double bound = base::upper_bound_share(share * draws, draws, kConfidence);
-  std::string detail = fmt::format("{} of {} samples over, bound of {:.0f} % confidence", std::lround(share * check.samples), check.samples,
-                                   100.0 * kConfidence);
-  if (is_drawn) {
-    // Samples of one game share its load, so they count as one draw. This errs on the safe side.
-    detail += fmt::format(" by {} games", draws);
+  ShareBasis basis{.over = std::lround(share * check.samples),
+                   .samples = check.samples,
+                   .confidence_share = kConfidence_share,
+                   .games = is_drawn ? std::optional(draws) : std::nullopt,
+                   .limit_share = limit_of(check),
+                   .samples_needed = base::draws_needed(share, limit_of(check), kConfidence_share)};
+  if (is_drawn && basis.samples_needed) {
+    *basis.samples_needed *= (check.samples + draws - 1) / draws;
   }
-  for (const Limit& limit : check.limits) {
-    if (limit.type->name != "probability_over_limit" || bound <= limit.value) {
-      continue;
-    }
-    detail += "; " + what_would_do(check, share, limit.value, draws);
-  }
-  return {bound, 0.0, detail};
+  // Samples of one game share its load, so they count as one draw. This errs on the safe side.
+  return {base::upper_bound_share(share * draws, draws, kConfidence_share), 0.0, basis};
 }
 
 }  // namespace

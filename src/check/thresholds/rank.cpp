@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <tuple>
 
@@ -11,17 +9,14 @@ namespace {
 Measured measure_rank(const Check& check, Computations& computations) {
   const select::MotorEvaluation& own = computations.feasible_evaluation(check);
   const auto order = [](const select::MotorEvaluation& each) { return std::tuple(each.verdict, -select::nearest_margin_K(each)); };
-  std::string better;
-  int place = 1;
+  std::vector<std::string> better;
   for (const motor::Motor& motor : check.against) {
     const select::MotorEvaluation& other = computations.evaluation(check, motor);
     if (order(other) < order(own)) {
-      ++place;
-      better += fmt::format("{}{}", better.empty() ? "" : ", ", other.motor_id);
+      better.push_back(other.motor_id);
     }
   }
-  return {static_cast<double>(place), 0.0,
-          fmt::format("of {} motors{}{}", check.against.size() + 1, better.empty() ? "" : "; before it: ", better)};
+  return {static_cast<double>(better.size() + 1), 0.0, RankBasis{check.against.size() + 1, better}};
 }
 
 }  // namespace

@@ -34,9 +34,7 @@ Measured measure_time_above(const Check& check, Computations& computations) {
     const select::TraceRow& row = trace.rows[i];
     sum_s += above_s(before.winding_C, row.winding_C, limit_C, row.time_s - before.time_s);
   }
-  return {sum_s, 0.0,
-          fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", limit_C, hottest.duration_s(),
-                      result.winding_peak_C.nominal)};
+  return {sum_s, 0.0, TimeAboveBasis{limit_C, hottest.duration_s(), result.winding_peak_C.nominal}};
 }
 
 /// The time above a temperature never exceeds the duration of the duty, and time above more than the motor's own limit comes too late.

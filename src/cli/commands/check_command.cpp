@@ -11,10 +11,11 @@
 #include "base/quantity.h"
 #include "base/version.h"
 #include "check/check_job.h"
-#include "check/check_text.h"
 #include "cli/command.h"
 #include "cli/quantity_option.h"
 #include "present/check.h"
+#include "present/github.h"
+#include "present/junit.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -33,10 +34,10 @@ std::string environment(const char* name) {
 /// command only warns.
 void write_github(const std::vector<check::Outcome>& outcomes, Session& session) {
   if (environment("GITHUB_ACTIONS") == "true") {
-    session.say(check::annotations(outcomes, environment("GITHUB_WORKSPACE")));
+    session.say(present::annotations(outcomes, environment("GITHUB_WORKSPACE")));
   }
   if (const std::string page = environment("GITHUB_STEP_SUMMARY"); !page.empty()) {
-    session.complete_with([page, text = check::summary_markdown(outcomes, base::program_version())] {
+    session.complete_with([page, text = present::summary_markdown(outcomes, base::program_version())] {
       std::ofstream file(page, std::ios::app | std::ios::binary);
       if (!(file << text).flush()) {
         fmt::print(stderr, "warning: the summary of the run is missing: {} cannot be written\n", page);
@@ -61,8 +62,9 @@ base::ExitCode run(CheckOptions& options, Session& session) {
   };
   const auto kept = std::make_shared<check::CheckAnswer>();
   if (!options.junit.empty()) {
-    session.write_after_failure(
-        options.junit, [kept](const base::Failure& failure) { return check::junit_xml(kept->outcomes, failure, base::program_version()); });
+    session.write_after_failure(options.junit, [kept](const base::Failure& failure) {
+      return present::junit_xml(kept->outcomes, failure, base::program_version());
+    });
   }
   *kept = with_progress([&](const base::JobProgress& progress) { return check::run_check_job(options.job, session.folders(), progress); });
   const check::CheckAnswer& answer = *kept;
@@ -73,7 +75,7 @@ base::ExitCode run(CheckOptions& options, Session& session) {
     session.rewrite(each.path, each.text);
   }
   if (!options.junit.empty()) {
-    session.write(options.junit, check::junit_xml(answer.outcomes, base::program_version()));
+    session.write(options.junit, present::junit_xml(answer.outcomes, base::program_version()));
   }
   present::Document document = present::check_document(answer.outcomes, options.job.updates);
   document.add_file(options.junit);

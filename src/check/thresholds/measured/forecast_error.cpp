@@ -1,10 +1,9 @@
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
 #include "calibration/forecast/prediction.h"
 #include "check/computations.h"
+#include "check/not_evaluated.h"
 #include "recording/read_recording.h"
 
 namespace heatsoak::check::thresholds {
@@ -12,7 +11,7 @@ namespace {
 
 std::vector<recording::Recording> recordings_of(const Check& check) {
   if (check.logs.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, "the list of logs is empty");
+    throw NotEvaluated(NoLogs{});
   }
   std::vector<recording::Recording> all;
   for (const std::filesystem::path& log : check.logs) {
@@ -24,21 +23,20 @@ std::vector<recording::Recording> recordings_of(const Check& check) {
 
 Measured measure_forecast_error(const Check& check, Computations& /*computations*/) {
   const calibration::Prediction prediction = calibration::predict(*check.motor, recordings_of(check), {.ambient_C = check.air_C});
-  std::string detail;
+  ForecastBasis basis;
   double worst_K = std::numeric_limits<double>::quiet_NaN();
   for (const calibration::PredictedRun& run : prediction.runs) {
     for (const calibration::PredictedSignal& each : run.signals) {
       if (each.samples > 0) {
         worst_K = std::fmax(worst_K, each.rmse_K);
-        detail += fmt::format("{}{}: {} {:.2f} K rms, {:.1f} K at most", detail.empty() ? "" : "; ", run.name, each.signal, each.rmse_K,
-                              each.max_abs_K);
+        basis.signals.push_back({run.name, each.signal, each.rmse_K, each.max_abs_K});
       }
     }
   }
-  if (detail.empty()) {
-    throw base::Failure(base::ExitCode::cannot_answer, "the logs have no temperature to compare with");
+  if (basis.signals.empty()) {
+    throw NotEvaluated(NoMeasuredTemperature{});
   }
-  return {worst_K, 0.0, detail};
+  return {worst_K, 0.0, basis};
 }
 
 /// A model that is wrong by the whole range of the motor's temperatures predicts nothing.

@@ -1,16 +1,17 @@
-// Text output of checks for people, CI services and GitHub.
-#include "check/check_text.h"
-
+// Output of checks for CI services and GitHub.
 #include <expat.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <limits>
+#include <array>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
-namespace heatsoak::check {
+#include "present/github.h"
+#include "present/junit.h"
+
+namespace heatsoak::present {
 namespace {
 
 using testing::HasSubstr;
@@ -52,24 +53,21 @@ class Outcomes : public testing::Test {
   Outcomes() {
     checks_[0].name = "a <b> & \"c\" | 100 %, d: \xC3\xA9\x01\xFF";
     checks_[1].name = "second";
-    add(0, "winding_peak_p95", 100.0, 90.0, true, "");
-    add(0, "current_margin", 1.0, 0.5, true, "0.5 A is below the limit of 1 A");
-    add(1, "derating_excess", 0.0, std::numeric_limits<double>::quiet_NaN(), false, "guard.h:3:1: is\nno table, 100 %");
+    add(0, "winding_peak_p95", 100.0).measured = {.value = 90.0, .basis = check::MarginBasis{1.0}};
+    add(0, "current_margin", 1.0).measured = {.value = 0.5, .basis = check::MarginBasis{2.0}};
+    add(1, "derating_excess", 0.0).reason =
+        check::Failed{base::Failure(base::ExitCode::bad_input, "", {{{"guard.h", 3, 1}, {}, "is\nno table, 100 %"}})};
   }
 
-  void add(std::size_t check, std::string_view threshold, double limit, double value, bool is_evaluated, std::string reason) {
-    Outcome outcome;
-    outcome.check = &checks_.at(check);
+  check::Outcome& add(std::size_t check, std::string_view threshold, double limit) {
     const int line = 10 + static_cast<int>(outcomes_.size());
-    outcome.limit = {find_threshold(threshold), limit, "", "", {"/repository/checks/robot,1.toml", line, 5}};
-    outcome.measured = is_evaluated ? std::optional(Measured{value, 0.0, "what it rests on"}) : std::nullopt;
-    outcome.passed = reason.empty();
-    outcome.reason = std::move(reason);
-    outcomes_.push_back(std::move(outcome));
+    outcomes_.push_back({.check = &checks_.at(check),
+                         .limit = {check::find_threshold(threshold), limit, "", "", {"/repository/checks/robot,1.toml", line, 5}}});
+    return outcomes_.back();
   }
 
-  std::array<Check, 2> checks_;
-  std::vector<Outcome> outcomes_;
+  std::array<check::Check, 2> checks_;
+  std::vector<check::Outcome> outcomes_;
 };
 
 TEST_F(Outcomes, AreJunitThatParses) {
@@ -145,4 +143,4 @@ TEST_F(Outcomes, AreAMarkdownTable) {
 }
 
 }  // namespace
-}  // namespace heatsoak::check
+}  // namespace heatsoak::present
