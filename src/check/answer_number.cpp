@@ -23,7 +23,8 @@ constexpr std::array<std::string_view, 7> kBySignal{"coverage_90",          "err
 
 constexpr std::string_view kInterval = "ci95";
 
-constexpr std::array<std::string_view, 3> kNullIsNever{"time_to_limit_s", "rest_half_s", "rest_all_s"};
+/// List of the keys beside it whose null means that the event never happens.
+constexpr const char* kNever = "never";
 
 struct Child {
   std::string name;
@@ -138,12 +139,17 @@ std::optional<AnswerInterval> interval_of(const Json& group, std::string_view ke
   return std::nullopt;
 }
 
+bool is_never(const Json& group, const std::string& key) {
+  const auto keys = group.is_object() ? group.find(kNever) : group.end();
+  return keys != group.end() && std::ranges::find(*keys, Json(key)) != keys->end();
+}
+
 AnswerNumber number_of(const Trail& trail, const Json& value) {
   const std::string name = trail.name();
   if (value.is_object() || value.is_array()) {
     throw NotEvaluated(NumberIsGroup{name, names_of(children_of(value))});
   }
-  if (value.is_null() && std::ranges::find(kNullIsNever, trail.keys.back()) != kNullIsNever.end()) {
+  if (value.is_null() && is_never(*trail.groups.back(), trail.keys.back())) {
     return {.name = name, .value = std::numeric_limits<double>::infinity(), .unit = unit_at(trail)};
   }
   if (value.is_null()) {

@@ -13,7 +13,7 @@ namespace heatsoak::check {
 
 struct AnswerNumber {
   std::string name;                             ///< place in the answer
-  double value = 0.0;                           ///< infinite for a time that never comes: null of some keys
+  double value = 0.0;                           ///< infinite for a time that never comes: null of a key in the list `never` beside it
   std::string unit;                             ///< UDUNITS text; "" is a pure number
   bool is_whole = false;                        ///< an integer of the answer: a count or an index, which is no share
   std::optional<AnswerInterval> interval = {};  ///< 95 % interval that the answer gives beside the number

@@ -63,11 +63,9 @@ Document command_limits_description() {
           "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
           "counts.",
           "The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number with a 95 % "
-          "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit, "
-          "except "
-          "that null means never in time_to_limit_s. The command runs in the folder of the check file "
-          "and "
-          "writes no file."}};
+          "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit. "
+          "Exception: a null whose key is in the list \"never\" beside it is a time that never comes, longer than every limit. The command "
+          "runs in the folder of the check file and writes no file."}};
   document.listings.push_back({"in a check file:",
                                "[[check]]\n"
                                "name = \"purpose of this check\"\n"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "present/closed_loop_json.h"
 #include "present/default_spreads_json.h"
@@ -26,12 +27,14 @@ Json json(const select::Spread95& peak, const std::optional<select::Interval95>&
 Json json(const std::vector<select::RestOfHotMotor>& rests) {
   Json all = Json::array();
   for (const select::RestOfHotMotor& each : rests) {
-    all.push_back({{"play", fmt::format("{:.0f}min", each.play_s / 60.0)},
-                   {"rest_half_s", rounded(each.half_s, 0)},
-                   {"rest_all_s", rounded(each.all_s, 0)},
-                   {"starts", each.starts},
-                   {"starts_never", each.starts_never},
-                   {"over_without_current", each.over_without_current}});
+    Json rest{{"play", fmt::format("{:.0f}min", each.play_s / 60.0)},
+              {"rest_half_s", rounded(each.half_s, 0)},
+              {"rest_all_s", rounded(each.all_s, 0)},
+              {"starts", each.starts},
+              {"starts_never", each.starts_never},
+              {"over_without_current", each.over_without_current}};
+    add_never(rest, {"rest_half_s", "rest_all_s"});
+    all.push_back(std::move(rest));
   }
   return all;
 }
@@ -39,33 +42,35 @@ Json json(const std::vector<select::RestOfHotMotor>& rests) {
 Json json(const select::MotorEvaluation& each) {
   const auto number = [](const std::optional<int>& value) { return value ? Json(*value) : Json(); };
   const select::DecidingSamples deciding = select::deciding_samples(each);
-  return {{"id", each.motor_id},
-          {"winding_limit_C", rounded(each.winding_limit_C, 2)},
-          {"winding_peak_C", json(each.winding_peak_C, each.winding_p95_interval_C)},
-          {"stator_peak_C", json(each.stator_peak_C, each.stator_p95_interval_C)},
-          {"samples", each.samples},
-          {"samples_needed", number(each.samples_needed)},
-          {"deciding_samples", {{"p50", number(deciding.half)}, {"p90", number(deciding.nine_in_ten)}}},
-          {"probability_over_limit", rounded(each.probability_over_limit, 4)},
-          {"probability_ci95", json(each.probability_interval, 4)},
-          {"winding_p95_ci95_C", json(each.winding_p95_interval_C, 2)},
-          {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
-          {"current_rms_A", rounded(each.current_rms_A, 4)},
-          {"verdict", select::to_string(each.verdict)},
-          {"decided", select::is_decided(each)},
-          {"limiting_factor", select::to_string(each.limiting_factor)},
-          {"data_quality", each.data_quality},
-          {"wheel", each.wheel},
-          {"margin_K", rounded(each.margin_K, 2)},
-          {"stator_margin_K", rounded(each.stator_margin_K, 2)},
-          {"margin_A", rounded(each.margin_A, 4)},
-          {"stator_limit_C", rounded(each.stator_limit_C, 2)},
-          {"delivered_share", rounded(each.least_torque_share, 4)},
-          {"short_time_share", rounded(each.short_time_share, 4)},
-          {"short_probability", rounded(each.short_probability, 4)},
-          {"short_probability_ci95", json(each.short_interval, 4)},
-          {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
-          {"runaway", each.destroyed}};
+  Json result{{"id", each.motor_id},
+              {"winding_limit_C", rounded(each.winding_limit_C, 2)},
+              {"winding_peak_C", json(each.winding_peak_C, each.winding_p95_interval_C)},
+              {"stator_peak_C", json(each.stator_peak_C, each.stator_p95_interval_C)},
+              {"samples", each.samples},
+              {"samples_needed", number(each.samples_needed)},
+              {"deciding_samples", {{"p50", number(deciding.half)}, {"p90", number(deciding.nine_in_ten)}}},
+              {"probability_over_limit", rounded(each.probability_over_limit, 4)},
+              {"probability_ci95", json(each.probability_interval, 4)},
+              {"winding_p95_ci95_C", json(each.winding_p95_interval_C, 2)},
+              {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
+              {"current_rms_A", rounded(each.current_rms_A, 4)},
+              {"verdict", select::to_string(each.verdict)},
+              {"decided", select::is_decided(each)},
+              {"limiting_factor", select::to_string(each.limiting_factor)},
+              {"data_quality", each.data_quality},
+              {"wheel", each.wheel},
+              {"margin_K", rounded(each.margin_K, 2)},
+              {"stator_margin_K", rounded(each.stator_margin_K, 2)},
+              {"margin_A", rounded(each.margin_A, 4)},
+              {"stator_limit_C", rounded(each.stator_limit_C, 2)},
+              {"delivered_share", rounded(each.least_torque_share, 4)},
+              {"short_time_share", rounded(each.short_time_share, 4)},
+              {"short_probability", rounded(each.short_probability, 4)},
+              {"short_probability_ci95", json(each.short_interval, 4)},
+              {"voltage_needed_V", rounded(each.highest_voltage_V, 3)},
+              {"runaway", each.destroyed}};
+  add_never(result, {"time_to_limit_s"});
+  return result;
 }
 
 Json changes_json(const simulate::SuggestedChanges& changes) {

@@ -1,6 +1,8 @@
 #include "present/json.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -18,6 +20,12 @@ Json rounded(double value, int decimals) {
 }
 
 Json rounded(const std::optional<double>& value, int decimals) { return value ? rounded(*value, decimals) : nullptr; }
+
+void add_never(Json& json, std::initializer_list<const char*> keys) {
+  Json never = Json::array();
+  std::copy_if(keys.begin(), keys.end(), std::back_inserter(never), [&json](const char* key) { return json.at(key).is_null(); });
+  json["never"] = std::move(never);
+}
 
 void add_notes(Json& json, std::span<const Note> notes) {
   json["notes"] = Json::array();

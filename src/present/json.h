@@ -1,6 +1,7 @@
 // Parts of the JSON answers that all verbs share.
 #pragma once
 
+#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -16,6 +17,9 @@ struct Note;
 Json rounded(double value, int decimals);
 /// Returns a JSON number rounded to `decimals`, or null without a value.
 Json rounded(const std::optional<double>& value, int decimals);
+
+/// Adds the key "never": those of the keys whose null means that the event never happens. `check` reads it.
+void add_never(Json& json, std::initializer_list<const char*> keys);
 
 /// Adds the keys "notes", the words of all notes, and "warnings", the words of those with the severity warning.
 void add_notes(Json& json, std::span<const Note> notes);

@@ -24,7 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 const Json kAnswer = Json::parse(R"({
-  "schema": "heatsoak.simulate/1", "verdict": "pass", "cold_C": 10.6, "room_C": 25.0, "idle_s": 0.0, "runaway": false, "time_to_limit_s": null, "margin_A": null, "none": [],
+  "schema": "heatsoak.simulate/1", "verdict": "pass", "cold_C": 10.6, "room_C": 25.0, "idle_s": 0.0, "runaway": false, "time_to_limit_s": null, "never": ["time_to_limit_s"], "margin_A": null, "none": [],
   "planners": [{"planner": "fast", "distance_m": 900.5, "peaks_C": {"p05": 40.0, "p95": 61.5, "p95_ci95": [58.0, 66.0]}},
                {"planner": "slow.2", "distance_m": 700.0, "peaks_C": {"p05": 30.0, "p95": 51.5, "p95_ci95": [48.0, null]}}],
   "probability_over_limit": 0.02, "probability_ci95": [0.005, 0.06], "over_share_ci95": [0.0, 0.01], "over": 2,
@@ -34,7 +34,7 @@ const Json kAnswer = Json::parse(R"({
   "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
   "residual_tests": {"before": {"winding_C": {"periodogram_over_band": 1.1, "ljung_box_p": 0.4, "correlated_with": {"current": 0.1}}}},
   "power_balance_W": {"copper_loss": {"winding": 5.0}}, "curve": {"driver": [1.0], "driver_unit": "rad/s", "value": [2.0], "unit": "W"},
-  "rest_of_hot_motor": [{"play": "5min", "rest_half_s": 240.0, "rest_all_s": null}], "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
+  "rest_of_hot_motor": [{"play": "5min", "rest_half_s": 240.0, "rest_all_s": null, "never": ["rest_all_s"]}], "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
 
 /// Returns why there is no number of that name; a default NumberIsNull if there is one.
 Reason refusal(std::string_view place) {

@@ -258,6 +258,7 @@ TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limi
   const nlohmann::ordered_json rest = evaluation_json(answer).at("motors").at(0).at("rest_of_hot_motor").at(0);
   EXPECT_EQ(rest.at("over_without_current"), true);
   EXPECT_TRUE(rest.at("rest_all_s").is_null());
+  EXPECT_EQ(rest.at("never"), nlohmann::ordered_json::array({"rest_half_s", "rest_all_s"}));
 }
 
 select::MotorEvaluation undecided(const std::string& id, int over_of_75_games) {
