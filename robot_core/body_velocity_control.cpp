@@ -41,27 +41,25 @@ Vector3 scaled(const Vector3& v, float plane, float yaw) { return {v.x * plane, 
 }
 
 /// Reference of the command for the present time: extrapolated by its acceleration and turned into the robot's present heading.
-void follow_command(const Config& config, State& state, const Input& input, const Validated& validated, BodyReference& body) {
+BodyReference follow_command(const Config& config, State& state, const Input& input, const Validated& validated) {
   if (validated.mode == Mode::body_velocity) {
     const Command& command = input.command;
     const float age_s = input.command_age_s;
     const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
                             command.velocity.yaw + command.acceleration.yaw * age_s};
     const SineCosine turn = sine_cosine(-validated.velocity.yaw * age_s);
-    body.velocity = turned(continued, turn);
-    body.acceleration = turned(command.acceleration, turn);
-    body.push = turned(command.push, turn);
-  } else if (validated.mode == Mode::pose_target) {
+    return {turned(continued, turn), turned(command.acceleration, turn), turned(command.push, turn)};
+  }
+  if (validated.mode == Mode::pose_target) {
     Vector3 pose = input.pose;
     config.predict_pose(validated.velocity, input.pose_age_s, pose);
     if (config.plan_step(config, pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
       const SineCosine turn = sine_cosine(-pose.yaw);
-      body.velocity = turned(state.plan_velocity, turn);
-      body.acceleration = turned(state.plan_acceleration, turn);
-    } else {
-      state.plan_velocity = state.plan_acceleration = {};
+      return {turned(state.plan_velocity, turn), turned(state.plan_acceleration, turn)};
     }
+    state.plan_velocity = state.plan_acceleration = {};
   }
+  return {};
 }
 
 /// If limits hold the robot back, the velocity reference stays a little ahead of the robot in the commanded direction. The errors of the
@@ -121,30 +119,26 @@ void close_loop(const Config& config, State& state, const Validated& validated, 
 }  // namespace
 
 BodyReference control_body_velocity(const Config& config, State& state, const Input& input, const Validated& validated) {
-  BodyReference body;
   // After a gap or a start of State the references start anew and are valid for one period.
   const bool is_anew = validated.robot_fault == Reason::time_jump || state.steps == 0;
   const float since_s = is_anew ? config.period_s : state.held.since_s + validated.elapsed_s;
   state.held.since_s = 0.0F;
-  if (is_anew) {
+  const bool is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
+  // While the bridges are open the reference follows the robot. Otherwise the robot would have to catch up with it afterwards.
+  const bool is_open = validated.mode == Mode::coast || validated.robot_fault == Reason::period_invalid;
+  if (is_anew || is_open || is_wheelwise) {
     state.velocity_reference = validated.velocity;
     state.acceleration_reference = {};
     state.yaw_integral_rad = 0.0F;
   }
-  body.is_wheelwise = validated.mode == Mode::wheel_speed || validated.mode == Mode::wheel_torque;
-  // While the bridges are open the reference follows the robot. Otherwise the robot would have to catch up with it afterwards.
-  body.is_open = validated.mode == Mode::coast || validated.robot_fault == Reason::period_invalid;
-  if (body.is_open || body.is_wheelwise) {
-    state.velocity_reference = validated.velocity;
-    state.acceleration_reference = {};
-    state.yaw_integral_rad = 0.0F;
+  if (is_open || is_wheelwise) {
     state.speed_share = 1.0F;
-    return body;
+    return {.is_wheelwise = is_wheelwise, .is_open = is_open};
   }
   if (validated.mode != Mode::pose_target) {
     state.plan_velocity = state.plan_acceleration = {};
   }
-  follow_command(config, state, input, validated, body);
+  BodyReference body = follow_command(config, state, input, validated);
   limit(body.velocity, config.speed_limit_m_per_s, config.yaw_rate_limit_rad_per_s);
   hold_back(state, body.velocity, validated, since_s);
   if (state.speed_share < 1.0F) {

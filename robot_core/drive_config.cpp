@@ -114,12 +114,11 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
   return largest / smallest;
 }
 
-[[gnu::cold]] float spread_V_s_per_m(const Config& config) {
+/// Largest ratio of |c|/|c_i| over all sets of wheels.
+[[gnu::cold]] float most_ratio(const Config& config) {
   const WheelConfig* const wheel = config.wheel;
   float most = 0.0F;
-  float speed_per_rim_per_m = 0.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
-    speed_per_rim_per_m = larger(speed_per_rim_per_m, wheel[i].speed_per_rim_per_m);
     for (int j = i + 1; j < config.wheel_count; ++j) {
       for (int k = j + 1; k < config.wheel_count; ++k) {
         const float pairs[kMostWheels] = {cross(wheel[j], wheel[k]), cross(wheel[k], wheel[i]), cross(wheel[i], wheel[j])};
@@ -132,7 +131,7 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
                                     area(wheel[0], wheel[1], wheel[3]), area(wheel[0], wheel[1], wheel[2])};
     most = larger(most, most_ratio(all, kLeastArea_ratio));
   }
-  return most * speed_per_rim_per_m * config.derived.geared_constant_V_s_per_rad;
+  return most;
 }
 
 }  // namespace
@@ -184,8 +183,10 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
     // The margin follows the grip limit if the robot has no driver limit.
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
+    derived.rim_spread_V_s_per_m =
+        larger(derived.rim_spread_V_s_per_m, wheel.speed_per_rim_per_m * derived.geared_constant_V_s_per_rad);
   }
-  derived.spread_V_s_per_m = spread_V_s_per_m(config);
+  derived.spread_V_s_per_m = most_ratio(config) * derived.rim_spread_V_s_per_m;
   // Noise of a current sensor as a share of the driver's limit.
   constexpr float kSensedSlack_share = 0.05F;
   derived.sensed_slack_V = kSensedSlack_share * config.current_limit_A * config.lowest_resistance_ohm;

@@ -79,8 +79,10 @@ BodyReference find_references(const Config& config, State& state, const Input& i
                               WheelVoltages& voltage) {
   const BodyReference body = control_body_velocity(config, state, input, validated);
   if (body.is_open && !body.is_wheelwise) {
-    wheels = {};  // no motion is commanded
-    voltage = {};
+    for (int i = 0; i < config.wheel_count; ++i) {  // no motion is commanded
+      wheels.wheel[i].speed_rad_per_s = 0.0F;
+      voltage.wheel[i].feed_forward_V = 0.0F;
+    }
   } else {
     find_wheel_speeds(config, input, body, wheels);
     feed_forward(config, input, validated, body, wheels, voltage);

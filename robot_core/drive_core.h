@@ -80,7 +80,8 @@ struct DerivedConfig {
   float most_sensed_A = 0.0F;     ///< largest plausible current sample: the battery cannot drive more
   /// Largest difference between two estimates of one back-EMF, per sum of the absolute residuals of the rim speeds.
   float spread_V_s_per_m = 0.0F;
-  float sensed_slack_V = 0.0F;  ///< noise of a current sensor, as a voltage; ignored while the speed estimates agree
+  float rim_spread_V_s_per_m = 0.0F;  ///< largest difference of one back-EMF per difference of rim speeds
+  float sensed_slack_V = 0.0F;        ///< noise of a current sensor, as a voltage; ignored while the speed estimates agree
 };
 
 /// Parameters that stay constant while the robot runs. `heatsoak generate core` writes them, or make_core_config() on the host.

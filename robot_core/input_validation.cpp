@@ -275,6 +275,15 @@ bool imply_from(const Config& config, const State& state, Validated& validated, 
   return is_known;
 }
 
+/// Every sample may belong to each wheel: the spread is at least the difference between the fastest and the slowest rim.
+[[gnu::cold, gnu::noinline]] void widen_spread(const Config& config, Validated& validated) {
+  SpeedRange rim;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim.add(rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s));
+  }
+  validated.spread_V = larger(validated.spread_V, config.derived.rim_spread_V_s_per_m * (rim.fastest_rad_per_s - rim.slowest_rad_per_s));
+}
+
 /// Returns true if a rejected sample may be the correct one. This is possible only without a spare sensor, in two cases: fault 111 to 113
 /// of a wheel without current sensor whose sample does not stay constant; or fault 117 of two wheels that still contradict the rest. Two
 /// wrong sensors can outvote the others; if only one is wrong, the other wheel soon agrees with the rest again.
@@ -478,8 +487,10 @@ Validated validate_input(const Config& config, State& state, const Input& input)
     if (!validated.are_all_sensed) {
       find_from_some(config, state, validated);
     }
-    if (validated.is_any_possible || validated.are_samples_compared) {
+    if (validated.are_samples_compared) {
       validated.spread_V = std::numeric_limits<float>::infinity();
+    } else if (validated.is_any_possible) {
+      widen_spread(config, validated);
     }
   }
   compare_sensors(config, state, input, validated);

@@ -181,7 +181,7 @@ float share_of_wheel(const Config& config, int i, float most_V, WheelDemand& dem
   for (int i = 0; i < config.wheel_count; ++i) {
     driving_W[i] = demand[i].back_V * demand[i].current_A;
     // A wheel brakes only if all estimates of its speed agree on the direction.
-    if (!(absolute(demand[i].back_V) > validated.spread_V)) {
+    if (!(absolute(demand[i].back_V) > validated.spread_V) || validated.is_any_possible) {
       driving_W[i] = absolute(driving_W[i]);
     }
     body_W += driving_W[i];
