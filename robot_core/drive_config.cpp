@@ -134,6 +134,29 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
   return most;
 }
 
+/// Calculates from which sets of other wheels the speed of a wheel follows.
+[[gnu::cold]] void find_sets(Config& config, int i) {
+  WheelConfig& own = config.wheel[i];
+  const WheelConfig& a = config.wheel[(i + 1) % kMostWheels];
+  const WheelConfig& b = config.wheel[(i + 2) % kMostWheels];
+  const WheelConfig& c = config.wheel[(i + 3) % kMostWheels];
+  own.ab_ratio = cross(a, b);
+  own.bc_ratio = cross(b, c);
+  own.ca_ratio = cross(c, a);
+  own.to_a_ratio = cross(own, a);
+  own.to_b_ratio = cross(own, b);
+  own.to_c_ratio = cross(own, c);
+  own.own_bc_ratio = own.to_b_ratio + own.bc_ratio - own.to_c_ratio;
+  own.own_ca_ratio = own.to_c_ratio + own.ca_ratio - own.to_a_ratio;
+  own.own_ab_ratio = own.to_a_ratio + own.ab_ratio - own.to_b_ratio;
+  own.abc_ratio = own.ab_ratio + own.bc_ratio + own.ca_ratio;
+  own.sets = 0;
+  const float determinants[] = {own.ab_ratio, own.bc_ratio, own.ca_ratio, own.abc_ratio};
+  for (unsigned set = 0; set < 4; ++set) {
+    own.sets |= absolute(determinants[set]) >= kLeastArea_ratio ? 1U << set : 0U;
+  }
+}
+
 }  // namespace
 
 [[gnu::cold]] void complete(Config& config) {
@@ -170,6 +193,7 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     wheel.rim_per_speed_m = config.wheel_radius_m / wheel.slip_factor;
     wheel.speed_per_rim_per_m = wheel.slip_factor / config.wheel_radius_m;
     wheel.per_damping_rad_per_V_s = 1.0F / wheel.damping_V_s_per_rad;
+    find_sets(config, i);
     const float leverage =
         derived.plane_xx_factor * t_x * t_x + 2.0F * derived.plane_xy_factor * t_x * t_y + derived.plane_yy_factor * t_y * t_y;
     constexpr float kMostLeverage = 0.98F;  // above this the other wheels hardly determine this wheel's direction

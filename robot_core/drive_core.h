@@ -58,6 +58,19 @@ struct WheelConfig {
   /// speed_per_rim_per_m/(1 − tᵀ·P·t): converts the rim speed's residual of the fit over all wheels into the difference between the wheel
   /// speed and the one that the other wheels imply. 0 if the other wheels do not determine this speed.
   float others_rad_per_m = 0.0F;
+  // Sets of other wheels that determine this wheel's speed; a, b and c are the next three wheels. Sines of the angles between the rolling
+  // directions, and doubled areas of triangles between their tips.
+  float to_a_ratio = 0.0F;  ///< sine of the angle from this wheel's direction to that of wheel a
+  float to_b_ratio = 0.0F;
+  float to_c_ratio = 0.0F;
+  float ab_ratio = 0.0F;  ///< sine of the angle from the direction of wheel a to that of wheel b
+  float bc_ratio = 0.0F;
+  float ca_ratio = 0.0F;
+  float own_bc_ratio = 0.0F;  ///< doubled area of the triangle of this wheel, b and c
+  float own_ca_ratio = 0.0F;
+  float own_ab_ratio = 0.0F;
+  float abc_ratio = 0.0F;
+  std::uint32_t sets = 0;  ///< sets that determine the speed: bit 0 a and b, bit 1 b and c, bit 2 c and a, bit 3 all three
   float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip limit on level ground
   std::uint32_t is_grip_limit = 0;  ///< 1 if the grip limit is the smaller one, else 0
 };

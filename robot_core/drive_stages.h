@@ -125,6 +125,8 @@ SpeedRange speed_range(const Config& config, const State& state, const Validated
 
 /// A set determines no speed if two rolling directions have a smaller sine (8 degrees apart), or three span a smaller doubled area.
 inline constexpr float kLeastArea_ratio = 0.14F;
+/// Bit of the set of three other wheels in WheelConfig::sets.
+inline constexpr std::uint32_t kSetOfThree = 8U;
 /// Twice the signed area of the triangle between the tips of three rolling direction vectors.
 inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {
   return (b.rolling_x_share - a.rolling_x_share) * (c.rolling_y_share - a.rolling_y_share) -

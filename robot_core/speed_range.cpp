@@ -2,57 +2,33 @@
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
-namespace {
-
-/// Another wheel: rolling direction and rim speed without the rotation of the robot.
-struct Other {
-  float x_share;
-  float y_share;
-  float rim_m_per_s;  ///< NaN if the sensor is not accepted; SpeedRange::add() ignores the NaN that follow from it
-};
-
-Other other(const Config& config, const Validated& validated, int wheel) {
-  const int i = wheel % kMostWheels;
-  return {config.wheel[i].rolling_x_share, config.wheel[i].rolling_y_share, validated.rim_m_per_s[i]};
-}
-
-float cross(const WheelConfig& a, const Other& b) { return a.rolling_x_share * b.y_share - a.rolling_y_share * b.x_share; }
-float cross(const Other& a, const Other& b) { return a.x_share * b.y_share - a.y_share * b.x_share; }
-
-/// Adds the estimate sum/determinant, unless the sensors hardly determine it.
-[[gnu::always_inline]] inline void add(SpeedRange& range, float sum_m_per_s, float determinant) {
-  if (absolute(determinant) >= kLeastArea_ratio) {
-    range.add(sum_m_per_s / determinant);
-  }
-}
-
-}  // namespace
-
 [[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel) {
   const WheelConfig& own = config.wheel[wheel];
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
-  const Other a = other(config, validated, wheel + 1);
-  const Other b = other(config, validated, wheel + 2);
-  const Other c = other(config, validated, wheel + 3);
+  // NaN if the sensor is not accepted; SpeedRange::add() ignores the NaN that follow from it.
+  const float a_m_per_s = validated.rim_m_per_s[(wheel + 1) % kMostWheels];
+  const float b_m_per_s = validated.rim_m_per_s[(wheel + 2) % kMostWheels];
+  const float c_m_per_s = validated.rim_m_per_s[(wheel + 3) % kMostWheels];
+  const std::uint32_t sets = state.yaw_fault == 0 ? own.sets : own.sets & kSetOfThree;
   SpeedRange range;
   range.add(validated.rim_m_per_s[wheel]);
-  const float ab = cross(a, b);
-  const float bc = cross(b, c);
-  const float ca = cross(c, a);
-  const float to_a = cross(own, a);
-  const float to_b = cross(own, b);
-  const float to_c = cross(own, c);
-  if (state.yaw_fault == 0) {
-    add(range, to_b * a.rim_m_per_s - to_a * b.rim_m_per_s, ab);
-    add(range, to_c * b.rim_m_per_s - to_b * c.rim_m_per_s, bc);
-    add(range, to_a * c.rim_m_per_s - to_c * a.rim_m_per_s, ca);
+  if ((sets & 1U) != 0) {
+    range.add((own.to_b_ratio * a_m_per_s - own.to_a_ratio * b_m_per_s) / own.ab_ratio);
   }
-  // Three others without the gyro: barycentric coordinates in the triangle between the tips of their rolling directions.
-  add(range, (to_b + bc - to_c) * a.rim_m_per_s + (to_c + ca - to_a) * b.rim_m_per_s + (to_a + ab - to_b) * c.rim_m_per_s, ab + bc + ca);
+  if ((sets & 2U) != 0) {
+    range.add((own.to_c_ratio * b_m_per_s - own.to_b_ratio * c_m_per_s) / own.bc_ratio);
+  }
+  if ((sets & 4U) != 0) {
+    range.add((own.to_a_ratio * c_m_per_s - own.to_c_ratio * a_m_per_s) / own.ca_ratio);
+  }
+  // Without the gyro: barycentric coordinates in the triangle between the tips of the rolling directions.
+  if ((sets & kSetOfThree) != 0) {
+    range.add((own.own_bc_ratio * a_m_per_s + own.own_ca_ratio * b_m_per_s + own.own_ab_ratio * c_m_per_s) / own.abc_ratio);
+  }
   if (range.is_known() && validated.is_any_possible) {
-    range.add(a.rim_m_per_s);
-    range.add(b.rim_m_per_s);
-    range.add(c.rim_m_per_s);
+    range.add(a_m_per_s);
+    range.add(b_m_per_s);
+    range.add(c_m_per_s);
   }
   return {(range.slowest_rad_per_s + turning_m_per_s) * own.speed_per_rim_per_m,
           (range.fastest_rad_per_s + turning_m_per_s) * own.speed_per_rim_per_m};
