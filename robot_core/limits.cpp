@@ -329,6 +329,26 @@ bool finish_wheel(const Config& config, State& state, const Validated& validated
   return !is_held;
 }
 
+Reason reason_of_wheel(const WheelState& wheel, const ValidatedWheel& sensed, Reason limit) {
+  return sensed.is_speed_known ? strongest(wheel, limit) : Reason::wheel_speed_unknown;
+}
+
+/// Opens all bridges. No wheel is held back then.
+[[gnu::cold, gnu::noinline]] void open_bridges(const Config& config, State& state, const Validated& validated, const WheelDemand* demand,
+                                               LimitedVoltages& limited) {
+  state.is_limited = 0;
+  state.battery_current_A = 0.0F;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    WheelState& wheel = state.wheel[i];
+    wheel.current_bound_A = larger(demand[i].most_A, kBoundDecay * wheel.current_bound_A);
+    wheel.is_open = 1;
+    wheel.integral_V = 0.0F;
+    wheel.earlier_V = wheel.voltage_V;
+    wheel.voltage_V = 0.0F;
+    limited.wheel[i] = {0.0F, demand[i].most_A, reason_of_wheel(wheel, validated.wheel[i], Reason::none), true};
+  }
+}
+
 }  // namespace
 
 LimitedVoltages apply_limits(const Config& config, State& state, const Validated& validated, const BodyReference& body,
@@ -337,10 +357,13 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   WheelDemand demand[kMostWheels];
   const float most_V = smaller(config.voltage_limit_V, validated.battery_V);
   const float share = find_demands(config, state, validated, body, voltage, most_V, demand, limited);
-  state.is_limited = !body.is_open && share < 1.0F ? 1 : 0;
+  if (body.is_open) {
+    open_bridges(config, state, validated, demand, limited);
+    return limited;
+  }
+  state.is_limited = share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
-  const bool is_body_open = body.is_open;
   float power_W = 0.0F;
   float kept = 1.0F;
   for (int i = 0; i < config.wheel_count; ++i) {
@@ -348,11 +371,10 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
     LimitedWheel& end = limited.wheel[i];
     end.allowed_A = demand[i].most_A;
     float driven_V = 0.0F;
-    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept, driven_V) || is_body_open;
+    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept, driven_V);
     wheel.is_open = end.is_open ? 1 : 0;
     if (end.is_open) {
       end.voltage_V = 0.0F;
-      end.reason = is_body_open ? Reason::none : end.reason;
       wheel.integral_V = 0.0F;
     } else {
       power_W += end.voltage_V * demand[i].current_A;
@@ -361,7 +383,7 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
     }
     wheel.earlier_V = wheel.voltage_V;
     wheel.voltage_V = end.voltage_V;
-    end.reason = validated.wheel[i].is_speed_known ? strongest(wheel, end.reason) : Reason::wheel_speed_unknown;
+    end.reason = reason_of_wheel(wheel, validated.wheel[i], end.reason);
   }
   state.battery_current_A = power_W / validated.pwm_battery_V;
   if (kept < 1.0F) {
