@@ -299,34 +299,30 @@ Reason strongest(const WheelState& wheel, Reason limit) {
   return is_held;
 }
 
-/// Returns true if the sensed current and the current that it predicts for a voltage keep the limit.
-bool is_within_by_current(const Config& config, WheelState& wheel, float sensed_A, float most_A, float voltage_V) {
-  const float next_A = sensed_A + (voltage_V - wheel.voltage_V) * config.derived.per_lowest_resistance_A_per_V;
-  const bool is_within = wheel.is_open == 0 && absolute(sensed_A) <= most_A && absolute(next_A) <= most_A;
-  wheel.current_bound_A = is_within ? larger(most_A, kBoundDecay * wheel.current_bound_A) : wheel.current_bound_A;
-  return is_within;
-}
+/// Values for the common case of hold_wheel() that are the same for all wheels.
+struct Common {
+  float resistance_ohm;
+  float per_resistance_A_per_V;
+  float spread_V;
+};
 
-/// Limits the wanted voltage of one wheel. Returns true if its bridge has to open. `driven_V`: voltage minus back-EMF.
-bool finish_wheel(const Config& config, State& state, const Validated& validated, const WheelDemand& demand, int i, float most_V,
-                  LimitedWheel& end, float& kept, float& driven_V) {
-  end.voltage_V = demand.back_V + config.lowest_resistance_ohm * demand.current_A;
-  driven_V = end.voltage_V - demand.back_V;
-  const ValidatedWheel& sensed = validated.wheel[i];
-  WheelState& wheel = state.wheel[i];
-  // The common case of hold_wheel(): speeds and sensed current agree that the voltage keeps the limit.
-  if (sensed.is_speed_known && is_within(config, validated, demand, end.voltage_V)) {
-    if (!sensed.is_current_sensed) {
-      wheel.current_bound_A = demand.most_A;
-      return false;
-    }
-    if (is_within_by_current(config, wheel, sensed.current_A, demand.most_A, end.voltage_V)) {
-      return false;
-    }
+/// The common case of hold_wheel(): returns true if speeds and sensed current agree that the voltage keeps the limit. The sensed current
+/// and the one that it predicts for the voltage must keep it. `driven_V`: voltage minus back-EMF.
+bool is_plain(const Common& common, WheelState& wheel, const ValidatedWheel& sensed, float most_A, float voltage_V, float driven_V) {
+  if (!sensed.is_speed_known || !(absolute(driven_V) + common.spread_V < common.resistance_ohm * most_A)) {
+    return false;
   }
-  const bool is_held = hold_wheel(config, state, validated, demand, i, most_V, end, kept);
-  driven_V = end.voltage_V - demand.back_V;
-  return !is_held;
+  if (!sensed.is_current_sensed) {
+    wheel.current_bound_A = most_A;
+    return true;
+  }
+  const float sensed_A = sensed.current_A;
+  const float next_A = sensed_A + (voltage_V - wheel.voltage_V) * common.per_resistance_A_per_V;
+  if (wheel.is_open == 0 && absolute(sensed_A) <= most_A && absolute(next_A) <= most_A) {
+    wheel.current_bound_A = larger(most_A, kBoundDecay * wheel.current_bound_A);
+    return true;
+  }
+  return false;
 }
 
 Reason reason_of_wheel(const WheelState& wheel, const ValidatedWheel& sensed, Reason limit) {
@@ -364,26 +360,37 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
   state.is_limited = share < 1.0F ? 1 : 0;
   // Back-calculation: the integrators follow the voltages after the limits.
   const float feedback_share = smaller(1.0F, validated.elapsed_s * config.derived.per_tracking_time_per_s);
+  const Common common{config.lowest_resistance_ohm, config.derived.per_lowest_resistance_A_per_V, validated.spread_V};
+  const int count = config.wheel_count;
   float power_W = 0.0F;
   float kept = 1.0F;
-  for (int i = 0; i < config.wheel_count; ++i) {
+  for (int i = 0; i < count; ++i) {
     WheelState& wheel = state.wheel[i];
     LimitedWheel& end = limited.wheel[i];
-    end.allowed_A = demand[i].most_A;
-    float driven_V = 0.0F;
-    end.is_open = finish_wheel(config, state, validated, demand[i], i, most_V, end, kept, driven_V);
-    wheel.is_open = end.is_open ? 1 : 0;
-    if (end.is_open) {
-      end.voltage_V = 0.0F;
+    const float back_V = demand[i].back_V;
+    const float current_A = demand[i].current_A;
+    const float most_A = demand[i].most_A;
+    float voltage_V = back_V + common.resistance_ohm * current_A;
+    float driven_V = voltage_V - back_V;
+    bool is_open = false;
+    if (!is_plain(common, wheel, validated.wheel[i], most_A, voltage_V, driven_V)) {
+      end.voltage_V = voltage_V;
+      is_open = !hold_wheel(config, state, validated, demand[i], i, most_V, end, kept);
+      voltage_V = end.voltage_V;
+      driven_V = voltage_V - back_V;
+    }
+    if (is_open) {
+      voltage_V = 0.0F;
       wheel.integral_V = 0.0F;
     } else {
-      power_W += end.voltage_V * demand[i].current_A;
+      power_W += voltage_V * current_A;
       wheel.driven_squared_V2 += driven_V * driven_V;
-      wheel.integral_V += (end.voltage_V - voltage.wheel[i].wanted_V) * feedback_share;
+      wheel.integral_V += (voltage_V - voltage.wheel[i].wanted_V) * feedback_share;
     }
+    wheel.is_open = is_open ? 1 : 0;
     wheel.earlier_V = wheel.voltage_V;
-    wheel.voltage_V = end.voltage_V;
-    end.reason = reason_of_wheel(wheel, validated.wheel[i], end.reason);
+    wheel.voltage_V = voltage_V;
+    end = {voltage_V, most_A, reason_of_wheel(wheel, validated.wheel[i], end.reason), is_open};
   }
   state.battery_current_A = power_W / validated.pwm_battery_V;
   if (kept < 1.0F) {
