@@ -125,7 +125,10 @@ SpeedRange speed_range(const Config& config, const State& state, const Validated
 
 /// A set determines no speed if two rolling directions have a smaller sine (8 degrees apart), or three span a smaller doubled area.
 inline constexpr float kLeastArea_ratio = 0.14F;
-/// Bit of the set of three other wheels in WheelConfig::sets.
+/// Bits of WheelConfig::sets: sets of the next three wheels a, b and c that determine the speed of a wheel, pairs together with the gyro.
+inline constexpr std::uint32_t kSetOfAB = 1U;
+inline constexpr std::uint32_t kSetOfBC = 2U;
+inline constexpr std::uint32_t kSetOfCA = 4U;
 inline constexpr std::uint32_t kSetOfThree = 8U;
 /// Twice the signed area of the triangle between the tips of three rolling direction vectors.
 inline float area(const WheelConfig& a, const WheelConfig& b, const WheelConfig& c) {

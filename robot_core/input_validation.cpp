@@ -170,6 +170,7 @@ struct PlaneFit {
   float x_m_per_s = 0.0F;  ///< sums; after solve() the velocity
   float y_m_per_s = 0.0F;
   float determinant = 0.0F;
+  bool is_known = false;  ///< after solve(): true if the wheels determine both directions
 
   void add(const WheelConfig& wheel, float rim_m_per_s) {
     const float t_x = wheel.rolling_x_share;
@@ -180,17 +181,15 @@ struct PlaneFit {
     x_m_per_s += t_x * rim_m_per_s;
     y_m_per_s += t_y * rim_m_per_s;
   }
-  /// Returns false if the wheels do not determine both directions.
-  bool solve() {
+  void solve() {
     determinant = xx * yy - xy * xy;
-    if (!(determinant > kLeastDeterminant)) {
-      return false;
+    is_known = determinant > kLeastDeterminant;
+    if (is_known) {
+      const float inverse = 1.0F / determinant;
+      const float x = (x_m_per_s * yy - y_m_per_s * xy) * inverse;
+      y_m_per_s = (y_m_per_s * xx - x_m_per_s * xy) * inverse;
+      x_m_per_s = x;
     }
-    const float inverse = 1.0F / determinant;
-    const float x = (x_m_per_s * yy - y_m_per_s * xy) * inverse;
-    y_m_per_s = (y_m_per_s * xx - x_m_per_s * xy) * inverse;
-    x_m_per_s = x;
-    return true;
   }
   float rim_of(const WheelConfig& wheel) const { return wheel.rolling_x_share * x_m_per_s + wheel.rolling_y_share * y_m_per_s; }
   /// Sets `rim_m_per_s` of a wheel of the fit to the speed that the others imply: its residual grows by 1/(1 − leverage), as in
@@ -251,28 +250,32 @@ void find_from_all(const Config& config, Validated& validated) {
   validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
 }
 
-/// Fits the velocity of the body to the accepted samples, or to all, and finds the speed that the others imply for each of them. Returns
-/// false if they do not determine the velocity. Writes their rim speeds without the rotation, NaN for the other samples.
-bool imply_from(const Config& config, const State& state, Validated& validated, bool are_all, PlaneFit& fit, PerWheel& rim_m_per_s) {
+/// Fits the velocity of the body to the accepted samples, or to all, and finds the speed that the others imply for each of them. Writes
+/// their rim speeds without the rotation, NaN for the other samples.
+[[gnu::noinline]] void imply_from(const Config& config, const State& state, Validated& validated, bool are_all, PlaneFit& found) {
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    rim_m_per_s[i] = kNoSample;
+  const int count = config.wheel_count;
+  PerWheel& rim_m_per_s = validated.rim_m_per_s;
+  PlaneFit fit;
+  for (int i = 0; i < count; ++i) {
+    float own_m_per_s = kNoSample;
     if (are_all || validated.wheel[i].is_speed_sensed) {
-      rim_m_per_s[i] = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
-      fit.add(config.wheel[i], rim_m_per_s[i]);
+      own_m_per_s = rim_speed_m_per_s(config, i, state.wheel[i].raw_speed_rad_per_s) - turning_m_per_s;
+      fit.add(config.wheel[i], own_m_per_s);
     }
+    rim_m_per_s[i] = own_m_per_s;
   }
-  const bool is_known = fit.solve();
-  for (int i = 0; i < config.wheel_count; ++i) {
+  fit.solve();
+  found = fit;
+  for (int i = 0; i < count; ++i) {
     float implied_m_per_s = rim_m_per_s[i];
     if (implied_m_per_s == implied_m_per_s) {  // not NaN
-      if (is_known) {
+      if (fit.is_known) {
         fit.leave_out(config.wheel[i], implied_m_per_s);
       }
       validated.wheel[i].implied_rad_per_s = (implied_m_per_s + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m;
     }
   }
-  return is_known;
 }
 
 /// Every sample may belong to each wheel: the spread is at least the difference between the fastest and the slowest rim.
@@ -310,7 +313,8 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
 [[gnu::cold]] void find_from_some(const Config& config, const State& state, Validated& validated) {
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
   PlaneFit fit;
-  const bool is_known = imply_from(config, state, validated, false, fit, validated.rim_m_per_s);
+  imply_from(config, state, validated, false, fit);
+  const bool is_known = fit.is_known;
   if (!is_known) {
     fit.x_m_per_s = state.velocity_reference.x;
     fit.y_m_per_s = state.velocity_reference.y;
@@ -343,7 +347,7 @@ bool is_rejection_doubtful(const Config& config, const State& state, const Valid
   validated.are_samples_compared = !is_known || is_rejection_doubtful(config, state, validated);
   if (validated.are_samples_compared) {
     PlaneFit all;
-    imply_from(config, state, validated, true, all, validated.rim_m_per_s);
+    imply_from(config, state, validated, true, all);
   }
 }
 

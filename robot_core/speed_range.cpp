@@ -2,30 +2,35 @@
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
-[[gnu::cold]] SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel) {
-  const WheelConfig& own = config.wheel[wheel];
+SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel) {
+  const auto index = static_cast<unsigned>(wheel);
+  const WheelConfig& own = config.wheel[index];
+  const PerWheel& rim_m_per_s = validated.rim_m_per_s;
   const float turning_m_per_s = config.contact_radius_m * validated.velocity.yaw;
-  // NaN if the sensor is not accepted; SpeedRange::add() ignores the NaN that follow from it.
-  const float a_m_per_s = validated.rim_m_per_s[(wheel + 1) % kMostWheels];
-  const float b_m_per_s = validated.rim_m_per_s[(wheel + 2) % kMostWheels];
-  const float c_m_per_s = validated.rim_m_per_s[(wheel + 3) % kMostWheels];
-  const std::uint32_t sets = state.yaw_fault == 0 ? own.sets : own.sets & kSetOfThree;
+  const float a_m_per_s = rim_m_per_s[(index + 1) % kMostWheels];
+  const float b_m_per_s = rim_m_per_s[(index + 2) % kMostWheels];
+  const float c_m_per_s = rim_m_per_s[(index + 3) % kMostWheels];
+  // Leaves out the sets with a sensor that is not accepted, whose rim speed is NaN.
+  std::uint32_t sets = state.yaw_fault == 0 ? own.sets : own.sets & kSetOfThree;
+  sets &= a_m_per_s == a_m_per_s ? ~0U : kSetOfBC;
+  sets &= b_m_per_s == b_m_per_s ? ~0U : kSetOfCA;
+  sets &= c_m_per_s == c_m_per_s ? ~0U : kSetOfAB;
   SpeedRange range;
-  range.add(validated.rim_m_per_s[wheel]);
-  if ((sets & 1U) != 0) {
+  range.add(rim_m_per_s[index]);
+  if ((sets & kSetOfAB) != 0) {
     range.add((own.to_b_ratio * a_m_per_s - own.to_a_ratio * b_m_per_s) / own.ab_ratio);
   }
-  if ((sets & 2U) != 0) {
+  if ((sets & kSetOfBC) != 0) {
     range.add((own.to_c_ratio * b_m_per_s - own.to_b_ratio * c_m_per_s) / own.bc_ratio);
   }
-  if ((sets & 4U) != 0) {
+  if ((sets & kSetOfCA) != 0) {
     range.add((own.to_a_ratio * c_m_per_s - own.to_c_ratio * a_m_per_s) / own.ca_ratio);
   }
   // Without the gyro: barycentric coordinates in the triangle between the tips of the rolling directions.
   if ((sets & kSetOfThree) != 0) {
     range.add((own.own_bc_ratio * a_m_per_s + own.own_ca_ratio * b_m_per_s + own.own_ab_ratio * c_m_per_s) / own.abc_ratio);
   }
-  if (range.is_known() && validated.is_any_possible) {
+  if (validated.is_any_possible && range.is_known()) {
     range.add(a_m_per_s);
     range.add(b_m_per_s);
     range.add(c_m_per_s);
