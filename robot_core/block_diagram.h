@@ -106,6 +106,7 @@ inline constexpr SignalText kSignals[] = {
     {"Validated", "spread_V", "V", validate_input, only(apply_limits)},
     {"Validated", "is_redundancy_reduced", "flag", validate_input, only(apply_limits)},
     {"Validated", "is_checked", "flag", validate_input, run_guards | apply_limits},
+    {"Validated", "is_any_possible", "flag", validate_input, only(apply_limits)},
     {"Validated", "are_samples_compared", "flag", validate_input, only(apply_limits)},
     {"Validated", "common_reason", "code", validate_input, only(apply_limits)},
     {"Validated", "wheel.current_A", "A", validate_input, run_guards | apply_limits},

@@ -1,6 +1,9 @@
 // Stage 2: converts the command into the motion that the body should have now.
 #include "robot_core/drive_stages.h"
 
+// For size: it runs in every second step, and its part for pose targets seldom.
+#pragma GCC optimize("Os")
+
 namespace robot_core {
 namespace {
 

@@ -207,8 +207,7 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     wheel.body_limit_A = wheel.is_grip_limit != 0 ? grip_A : config.current_limit_A;
     // The margin follows the grip limit if the robot has no driver limit.
     derived.current_margin_A = larger(derived.current_margin_A, kCurrent_share * wheel.body_limit_A);
-    derived.rim_spread_V_s_per_m =
-        larger(derived.rim_spread_V_s_per_m, wheel.speed_per_rim_per_m * derived.geared_constant_V_s_per_rad);
+    derived.rim_spread_V_s_per_m = larger(derived.rim_spread_V_s_per_m, wheel.speed_per_rim_per_m * derived.geared_constant_V_s_per_rad);
   }
   derived.spread_V_s_per_m = most_ratio(config) * derived.rim_spread_V_s_per_m;
   // Noise of a current sensor as a share of the driver's limit.

@@ -70,7 +70,7 @@ struct WheelConfig {
   float own_ca_ratio = 0.0F;
   float own_ab_ratio = 0.0F;
   float abc_ratio = 0.0F;
-  std::uint32_t sets = 0;  ///< sets that determine the speed: bit 0 a and b, bit 1 b and c, bit 2 c and a, bit 3 all three
+  std::uint32_t sets = 0;           ///< sets that determine the speed: bit 0 a and b, bit 1 b and c, bit 2 c and a, bit 3 all three
   float body_limit_A = 0.0F;        ///< smaller one of driver limit and grip limit on level ground
   std::uint32_t is_grip_limit = 0;  ///< 1 if the grip limit is the smaller one, else 0
 };

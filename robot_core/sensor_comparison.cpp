@@ -122,8 +122,9 @@ bool is_controlled(Mode mode) { return mode == Mode::body_velocity || mode == Mo
     }
     const float driven_V = wheel.voltage_V - config.derived.geared_constant_V_s_per_rad * wheel.raw_speed_rad_per_s;
     // The limits may leave less than the limp current: without spare sensors, or if the gyro contradicts wheels that seem to stand.
-    const bool is_held_back = validated.mode != Mode::coast && ((validated.is_redundancy_reduced && state.is_limited != 0) || validated.is_any_possible ||
-                                                                validated.spread_V > config.lowest_resistance_ohm * config.limp_current_A);
+    const bool is_held_back =
+        validated.mode != Mode::coast && ((validated.is_redundancy_reduced && state.is_limited != 0) || validated.is_any_possible ||
+                                          validated.spread_V > config.lowest_resistance_ohm * config.limp_current_A);
     is_driven = is_driven || is_held_back || absolute(driven_V) > config.lowest_resistance_ohm * config.limp_current_A;
   }
   // Counts up to twice the threshold: the limp current keeps the evidence below it afterwards.

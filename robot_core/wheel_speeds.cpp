@@ -37,8 +37,7 @@ void find_wheel_speeds(const Config& config, const Input& input, const BodyRefer
     const float per_rim = wheel.speed_per_rim_per_m;
     const float t_x = wheel.rolling_x_share;
     const float t_y = wheel.rolling_y_share;
-    wheels.wheel[i] = {per_rim * (t_x * x_m_per_s + t_y * y_m_per_s + turning_m_per_s),
-                       per_rim * (t_x * rate_x + t_y * rate_y + rate_yaw)};
+    wheels.wheel[i] = {per_rim * (t_x * x_m_per_s + t_y * y_m_per_s + turning_m_per_s), per_rim * (t_x * rate_x + t_y * rate_y + rate_yaw)};
   }
 }
 
