@@ -41,6 +41,21 @@ void expect_same(const Replay& target, const std::vector<Input>& inputs, const s
   EXPECT_EQ(first_difference(target.output, expected, sizeof(DriveResult)), inputs.size());
 }
 
+/// Checks mean and worst step, and records both under names with this end.
+void expect_within_budget(const Replay& target, double mean_instructions, const std::string& end) {
+  EXPECT_LE(target.mean_instructions(), mean_instructions) << end;
+  const auto most = std::ranges::max_element(target.instructions);
+  ASSERT_NE(most, target.instructions.end());
+  EXPECT_LE(*most, kMostInstructions) << end << " in step " << most - target.instructions.begin();
+  testing::Test::RecordProperty("mean_instructions" + end, std::to_string(target.mean_instructions()));
+  testing::Test::RecordProperty("most_instructions" + end, std::to_string(*most));
+}
+
+double mean_before_faults(const Replay& target) {
+  const auto faults = target.instructions.begin() + static_cast<std::ptrdiff_t>(target.instructions.size() / 3 * 2);
+  return std::accumulate(target.instructions.begin(), faults, 0.0) / static_cast<double>(faults - target.instructions.begin());
+}
+
 std::set<Reason> reasons_of(const std::vector<DriveResult>& results) {
   std::set<Reason> reasons;
   for (const DriveResult& result : results) {
@@ -86,18 +101,33 @@ TEST(DriveCoreOnTarget, MinuteOfPlayAgreesBitForBit) {
   EXPECT_LE(target.summary.memory_bytes, kMostMemory_bytes);
   const CallGraph::Depth depth = depth_of_step(kStepOfImage, false);
   EXPECT_LE(target.summary.most_stack_bytes, depth.bytes) << testing::PrintToString(depth.path);
-  EXPECT_LE(target.mean_instructions(), kMeanInstructionsWithFaults);
-  const auto faults = target.instructions.begin() + static_cast<std::ptrdiff_t>(target.instructions.size() / 3 * 2);
-  const double before_faults =
-      std::accumulate(target.instructions.begin(), faults, 0.0) / static_cast<double>(faults - target.instructions.begin());
-  EXPECT_LE(before_faults, kMeanInstructions);
-  const auto most = std::ranges::max_element(target.instructions);
-  EXPECT_LE(*most, kMostInstructions) << "in step " << most - target.instructions.begin();
+  expect_within_budget(target, kMeanInstructionsWithFaults, "");
+  EXPECT_LE(mean_before_faults(target), kMeanInstructions);
   RecordProperty("memory_bytes", std::to_string(target.summary.memory_bytes));
-  RecordProperty("mean_instructions", std::to_string(target.mean_instructions()));
-  RecordProperty("mean_instructions_before_faults", std::to_string(before_faults));
-  RecordProperty("most_instructions", std::to_string(target.most_instructions()));
+  RecordProperty("mean_instructions_before_faults", std::to_string(mean_before_faults(target)));
   RecordProperty("stack_bytes", std::to_string(target.summary.most_stack_bytes));
+}
+
+// Found after the budgets were met for seed 1: these seeds exceeded them.
+TEST(DriveCoreOnTarget, OtherMinutesStayWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  for (const unsigned seed : {4U, 7U, 8U}) {
+    const std::vector<Input> inputs = minute_of_play(seed, Play::usual);
+    const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
+    expect_same(target, inputs, on_host(inputs));
+    expect_within_budget(target, kMeanInstructionsWithFaults, "_" + std::to_string(seed));
+    EXPECT_LE(mean_before_faults(target), kMeanInstructions) << seed;
+  }
+}
+
+TEST(DriveCoreOnTarget, LostWheelSensorStaysWithinTheBudget) {
+  SKIP_WITHOUT_EMULATOR();
+  const std::vector<Input> inputs = minute_of_play(1, Play::lost_wheel_sensor);
+  const std::vector<DriveResult> host = on_host(inputs);
+  EXPECT_EQ(host.back().reason[3], static_cast<std::uint8_t>(Reason::wheel_speed_missing));
+  const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
+  expect_same(target, inputs, host);
+  expect_within_budget(target, kMeanInstructionsLostSensor, "");
 }
 
 TEST(DriveCoreOnTarget, LateStepsStayWithinTheBudget) {
@@ -106,11 +136,7 @@ TEST(DriveCoreOnTarget, LateStepsStayWithinTheBudget) {
     const std::vector<Input> inputs = minute_of_play(seed, Play::late_steps);
     const Replay target = replay(HEATSOAK_DRIVE_IMAGE, bytes_of(inputs));
     expect_same(target, inputs, on_host(inputs));
-    EXPECT_LE(target.mean_instructions(), kMeanInstructionsLate) << seed;
-    const auto most = std::ranges::max_element(target.instructions);
-    EXPECT_LE(*most, kMostInstructions) << "seed " << seed << ", step " << most - target.instructions.begin();
-    RecordProperty("mean_instructions_" + std::to_string(seed), std::to_string(target.mean_instructions()));
-    RecordProperty("most_instructions_" + std::to_string(seed), std::to_string(*most));
+    expect_within_budget(target, kMeanInstructionsLate, "_" + std::to_string(seed));
   }
 }
 

@@ -202,7 +202,9 @@ std::vector<Input> minute_of_play(unsigned seed, Play play) {
       input.elapsed_s = run.config.period_s * random.between(1.0F, robot_core::kLongestGap_periods);
     }
     const float time_s = input.elapsed_s;
-    if (3 * k >= 2 * periods) {
+    if (play == Play::lost_wheel_sensor) {
+      input.wheel_speed_rad_per_s[3] = 60 * k >= periods ? robot_core::kNoSample : input.wheel_speed_rad_per_s[3];
+    } else if (3 * k >= 2 * periods) {
       if (--fault.periods <= 0) {
         fault = {random.happens(0.5F) ? random.below(kFaultKinds) : -1, random.below(kMostWheels), 1 + random.below(300)};
         // Swapped sensors remain a fault until start(), so they appear only near the end.
