@@ -58,7 +58,7 @@ BodyReference follow_command(const Config& config, State& state, const Input& in
     config.predict_pose(validated.velocity, input.pose_age_s, pose);
     if (config.plan_step(config, pose, input.command.pose, state.plan_velocity, state.plan_acceleration)) {
       const SineCosine turn = sine_cosine(-pose.yaw);
-      return {turned(state.plan_velocity, turn), turned(state.plan_acceleration, turn)};
+      return {turned(state.plan_velocity, turn), turned(state.plan_acceleration, turn), {}};
     }
     state.plan_velocity = state.plan_acceleration = {};
   }
@@ -136,7 +136,7 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   }
   if (is_open || is_wheelwise) {
     state.speed_share = 1.0F;
-    return {.is_wheelwise = is_wheelwise, .is_open = is_open};
+    return {{}, {}, {}, is_wheelwise, is_open};
   }
   if (validated.mode != Mode::pose_target) {
     state.plan_velocity = state.plan_acceleration = {};
