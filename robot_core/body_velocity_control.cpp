@@ -51,7 +51,9 @@ BodyReference follow_command(const Config& config, State& state, const Input& in
     const Vector3 continued{command.velocity.x + command.acceleration.x * age_s, command.velocity.y + command.acceleration.y * age_s,
                             command.velocity.yaw + command.acceleration.yaw * age_s};
     const SineCosine turn = sine_cosine(-validated.velocity.yaw * age_s);
-    return {turned(continued, turn), turned(command.acceleration, turn), turned(command.push, turn)};
+    BodyReference body{turned(continued, turn), turned(command.acceleration, turn), {}};
+    body.push = turned(command.push, turn);
+    return body;
   }
   if (validated.mode == Mode::pose_target) {
     Vector3 pose = input.pose;
@@ -150,6 +152,7 @@ BodyReference control_body_velocity(const Config& config, State& state, const In
   approach(config, state, validated, since_s, body);
   state.velocity_reference = body.velocity;
   close_loop(config, state, validated, since_s, body);
+  body.is_wheelwise = body.is_open = false;
   return body;
 }
 

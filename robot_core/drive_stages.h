@@ -122,6 +122,10 @@ struct SpeedRange {
 };
 /// Calculates the range of one wheel (speed_range.cpp). The range is empty if no accepted set of sensors determines the speed.
 SpeedRange speed_range(const Config& config, const State& state, const Validated& validated, int wheel);
+/// Three wheels, or a rejected sensor: at most one more may be wrong.
+void check_redundancy(const Config& config, const State& state, Validated& validated);
+/// Every sample may belong to each wheel: the spread is at least the difference between the fastest and the slowest rim.
+void widen_spread(const Config& config, Validated& validated);
 
 /// A set determines no speed if two rolling directions have a smaller sine (8 degrees apart), or three span a smaller doubled area.
 inline constexpr float kLeastArea_ratio = 0.14F;

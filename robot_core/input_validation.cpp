@@ -236,20 +236,6 @@ void find_from_all(const Config& config, Validated& validated) {
   validated.spread_V = derived.spread_V_s_per_m * disagreement_m_per_s;
 }
 
-/// Three wheels, or a rejected sensor: at most one more may be wrong.
-[[gnu::cold, gnu::noinline]] void check_redundancy(const Config& config, const State& state, Validated& validated) {
-  int sensed = state.yaw_fault == 0 ? 1 : 0;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    sensed += validated.wheel[i].is_speed_sensed ? 1 : 0;
-  }
-  validated.is_redundancy_reduced = true;
-  if (config.wheel_count < kMostWheels) {
-    validated.rim_m_per_s[kMostWheels - 1] = kNoSample;
-  }
-  validated.is_checked = sensed > 3;
-  validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
-}
-
 /// Fits the velocity of the body to the accepted samples, or to all, and finds the speed that the others imply for each of them. Writes
 /// their rim speeds without the rotation, NaN for the other samples.
 [[gnu::noinline]] void imply_from(const Config& config, const State& state, Validated& validated, bool are_all, PlaneFit& found) {
@@ -276,15 +262,6 @@ void find_from_all(const Config& config, Validated& validated) {
       validated.wheel[i].implied_rad_per_s = (implied_m_per_s + turning_m_per_s) * config.wheel[i].speed_per_rim_per_m;
     }
   }
-}
-
-/// Every sample may belong to each wheel: the spread is at least the difference between the fastest and the slowest rim.
-[[gnu::cold, gnu::noinline]] void widen_spread(const Config& config, Validated& validated) {
-  SpeedRange rim;
-  for (int i = 0; i < config.wheel_count; ++i) {
-    rim.add(rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s));
-  }
-  validated.spread_V = larger(validated.spread_V, config.derived.rim_spread_V_s_per_m * (rim.fastest_rad_per_s - rim.slowest_rad_per_s));
 }
 
 /// Returns true if a rejected sample may be the correct one. This is possible only without a spare sensor, in two cases: fault 111 to 113

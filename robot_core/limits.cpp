@@ -390,7 +390,10 @@ LimitedVoltages apply_limits(const Config& config, State& state, const Validated
     wheel.is_open = is_open ? 1 : 0;
     wheel.earlier_V = wheel.voltage_V;
     wheel.voltage_V = voltage_V;
-    end = {voltage_V, most_A, reason_of_wheel(wheel, validated.wheel[i], end.reason), is_open};
+    end.voltage_V = voltage_V;
+    end.allowed_A = most_A;
+    end.is_open = is_open;
+    end.reason = reason_of_wheel(wheel, validated.wheel[i], end.reason);
   }
   state.battery_current_A = power_W / validated.pwm_battery_V;
   if (kept < 1.0F) {

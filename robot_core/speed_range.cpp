@@ -1,4 +1,4 @@
-// Stage 1, third part: speeds that a wheel may have if some sensors are faulty. Called if a wheel is near its current limit.
+// Stage 1, third part: speeds that a wheel may have if some sensors are faulty.
 #include "robot_core/drive_stages.h"
 
 namespace robot_core {
@@ -37,6 +37,27 @@ SpeedRange speed_range(const Config& config, const State& state, const Validated
   }
   return {(range.slowest_rad_per_s + turning_m_per_s) * own.speed_per_rim_per_m,
           (range.fastest_rad_per_s + turning_m_per_s) * own.speed_per_rim_per_m};
+}
+
+[[gnu::cold]] void check_redundancy(const Config& config, const State& state, Validated& validated) {
+  int sensed = state.yaw_fault == 0 ? 1 : 0;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    sensed += validated.wheel[i].is_speed_sensed ? 1 : 0;
+  }
+  validated.is_redundancy_reduced = true;
+  if (config.wheel_count < kMostWheels) {
+    validated.rim_m_per_s[kMostWheels - 1] = kNoSample;
+  }
+  validated.is_checked = sensed > 3;
+  validated.is_any_possible = sensed == kMostWheels && state.comparison.is_checked == 0;
+}
+
+[[gnu::cold]] void widen_spread(const Config& config, Validated& validated) {
+  SpeedRange rim;
+  for (int i = 0; i < config.wheel_count; ++i) {
+    rim.add(rim_speed_m_per_s(config, i, validated.wheel[i].speed_rad_per_s));
+  }
+  validated.spread_V = larger(validated.spread_V, config.derived.rim_spread_V_s_per_m * (rim.fastest_rad_per_s - rim.slowest_rad_per_s));
 }
 
 }  // namespace robot_core
