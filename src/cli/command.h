@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,7 +25,7 @@ namespace heatsoak::cli {
 class Session {
  public:
   void add_data_option(CLI::App& app);     ///< --db
-  void add_answer_options(CLI::App& app);  ///< --explain, --quiet, --report and --json, for commands that show() documents
+  void add_answer_options(CLI::App& app);  ///< --explain, --quiet, --report and --json, for commands that show() a document
 
   [[nodiscard]] input::DataFolders folders() const;
   // All output is kept until the command has finished: finish() writes all of it, or nothing if a file cannot be written.
@@ -34,7 +33,7 @@ class Session {
   /// Adds text for other programs, such as a script: to stdout, or to stderr if the JSON goes to stdout. Control characters are replaced by
   /// '?'. Answers for people are documents: see show().
   void say(std::string_view text);
-  /// Adds a document in the width of the terminal, with the notes selected by --explain and --quiet, and as a file for --report.
+  /// Adds the answer: in the width of the terminal, with the notes selected by --explain and --quiet, and as files for --report and --json.
   void show(const present::Document& document);
   /// Adds a file that the user requested.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
@@ -56,19 +55,19 @@ class Session {
   void write_after_failure(std::filesystem::path path, std::function<std::string(const base::Failure&)> text) {
     after_failure_.emplace_back(std::move(path), std::move(text));
   }
-  /// Sets the JSON answer; ignored without --json. The program's version is inserted after the schema.
-  void answer(const nlohmann::ordered_json& json);
   void finish();
   /// Reports the failure instead of all other output.
   void answer_failure(const base::Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
   [[nodiscard]] bool gives_json() const { return !json_target_.empty(); }
   /// Returns the answer for stdout; null if there is none.
-  [[nodiscard]] nlohmann::ordered_json stdout_json() const;
+  [[nodiscard]] present::Json stdout_json() const;
   /// Returns the folder of --db; empty without it.
   [[nodiscard]] const std::string& database() const { return database_; }
 
  private:
+  void add_json(const present::Document& document);
+
   std::string database_;
   std::string json_target_;
   std::string report_;
@@ -84,27 +83,18 @@ class Session {
   std::vector<std::pair<std::filesystem::path, std::function<std::string(const base::Failure&)>>> after_failure_;
 };
 
-/// A topic of `list` and `describe` other than a file or an effect of the network, such as a sensor effect or a threshold.
-struct Topic {
-  std::string id;
-  std::string summary;
-  std::function<present::Document()> document;
-  std::function<nlohmann::ordered_json()> json;
-};
-
 struct Command {
   std::string_view name;  ///< name of its source file without a trailing "_command"; set by all_commands()
   std::string_view summary;
   std::string_view example;  ///< a command line that can be pasted and run
   /// Declares the options on `app` and returns the function that runs after they are parsed.
   std::function<std::function<base::ExitCode()>(CLI::App& app, Session& session)> declare;
-  std::function<std::vector<Topic>()> topics{};  ///< for `list` and `describe`
 };
 std::vector<Command> all_commands();
 
 /// Runs a command in a folder and returns its JSON answer; prints nothing and writes no file. `database`: folder for --db unless the words
 /// name one; may be empty. Throws Failure like the command, and if it has no JSON answer. Changes the working directory while it runs.
-nlohmann::ordered_json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database);
+present::Json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database);
 
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);

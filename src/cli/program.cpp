@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
@@ -118,18 +117,6 @@ base::Failure with_places(const base::Failure& failure) {
     }
   }
   return {failure.code(), failure.message(), std::move(all)};
-}
-
-/// Adds the program's version after the schema, so that changed results can be attributed to an upgrade.
-nlohmann::ordered_json with_version(const nlohmann::ordered_json& answer) {
-  nlohmann::ordered_json result;
-  for (const auto& [key, value] : answer.items()) {
-    result[key] = value;
-    if (key == "schema" || key == "error") {
-      result["version"] = base::program_version();
-    }
-  }
-  return result;
 }
 
 /// Returns annotations for GitHub Actions at each line with a problem; empty elsewhere.
@@ -269,8 +256,8 @@ void Session::add_answer_options(CLI::App& app) {
   app.add_flag("--explain", explains_, "show every note, not only the three most important ones");
   app.add_flag("--quiet", is_quiet_, "show only the first lines, which contain the answer; a list shows only its names");
   app.add_option("--report", report_,
-                 "write the whole answer as a document, with every column and note, as Markdown or HTML by the file's ending; - is stdout, "
-                 "in place of the text")
+                 "write the whole answer as a document, with every column and note, as Markdown, HTML or JSON by the file's ending; - is "
+                 "stdout, with Markdown in place of the text")
       ->type_name("FILE");
   app.add_option("--json", json_target_, "write the answer as JSON; - is stdout, the text then goes to stderr")
       ->type_name("FILE")
@@ -280,9 +267,10 @@ void Session::add_answer_options(CLI::App& app) {
 void Session::say(std::string_view text) { text_ += printable(text); }
 
 void Session::show(const present::Document& document) {
+  add_json(document);
   const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
   if (report_ == "-") {
-    text_ += present::rendered_for("-.md", document);
+    text_ += present::rendered_as("markdown", document);
     return;
   }
   text_ += present::terminal_text(document, {.width = terminal_width(descriptor),
@@ -305,15 +293,11 @@ void Session::draw(present::Document& document, const std::string& plot, report:
 
 input::DataFolders Session::folders() const { return input::DataFolders::find(database_); }
 
-void Session::answer(const nlohmann::ordered_json& json) {
-  if (json_target_.empty()) {
-    return;
-  }
-  std::string text = with_version(json).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+void Session::add_json(const present::Document& document) {
   if (json_target_ == "-") {
-    json_text_ = std::move(text);
-  } else {
-    files_.push_back({json_target_, std::move(text)});
+    json_text_ = present::rendered_as("json", document);
+  } else if (!json_target_.empty()) {
+    files_.push_back({json_target_, present::rendered_as("json", document)});
   }
 }
 
@@ -366,7 +350,7 @@ void Session::answer_failure(const base::Failure& failure) {
   for (const auto& [path, text] : std::exchange(after_failure_, {})) {
     files_.push_back({path, text(failure)});
   }
-  answer(present::failure_json(failure));
+  add_json({.data = present::failure_json(failure)});
   try {
     finish();
   } catch (const base::Failure& unwritable) {
@@ -376,11 +360,9 @@ void Session::answer_failure(const base::Failure& failure) {
   }
 }
 
-nlohmann::ordered_json Session::stdout_json() const {
-  return json_text_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json::parse(json_text_);
-}
+present::Json Session::stdout_json() const { return json_text_.empty() ? present::Json() : present::Json::parse(json_text_); }
 
-nlohmann::ordered_json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database) {
+present::Json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database) {
   const bool has_database = std::ranges::any_of(words, [](const std::string& word) { return word == "--db" || word.starts_with("--db="); });
   if (!database.empty() && !has_database) {
     words.insert(words.end(), {"--db", std::filesystem::absolute(database).string()});
@@ -402,7 +384,7 @@ nlohmann::ordered_json answer_of(std::vector<std::string> words, const std::file
       static_cast<void>(code_of(error, app, after_name));
     }
   }
-  nlohmann::ordered_json answer = session.stdout_json();
+  present::Json answer = session.stdout_json();
   if (answer.is_null()) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("`heatsoak {}` has no JSON answer on stdout; expected a command with one, "
                                                                "without --json",

@@ -1,13 +1,16 @@
 #include "cli/quantity_option.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/quantity.h"
+#include "report/chart.h"
 
 namespace heatsoak::cli {
 namespace {
@@ -52,7 +55,8 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& flag, std::optional<
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning) {
   return app.add_option("--plot", file, meaning)
       ->check([](const std::string& name) {
-        return name.ends_with(".svg") || name.ends_with(".png") ? std::string() : name + " does not end in .svg or .png";
+        const bool is_known = std::ranges::any_of(report::kPictureEndings, [&](std::string_view ending) { return name.ends_with(ending); });
+        return is_known ? std::string() : fmt::format("{} does not end in {}", name, fmt::join(report::kPictureEndings, " or "));
       })
       ->type_name("FILE.svg|png");
 }

@@ -84,6 +84,10 @@ motor::Motor motor_named(const input::DataFolders& folders, const std::string& n
   return *motor;
 }
 
+std::optional<motor::Motor> own_motor(const input::DataFolders& folders, const robot::Robot& robot) {
+  return NamedFiles(folders).motor_as_written(robot.drive.motor);
+}
+
 robot::Robot robot_named(const input::DataFolders& folders, const std::string& name) {
   NamedFiles named(folders);
   const std::optional<robot::Robot> robot = named.robot(name);

@@ -44,6 +44,8 @@ class NamedFiles {
 
 /// Read a single file with the same checks; the motor as in motor_as_written(). Throw Failure (bad_input).
 motor::Motor motor_named(const input::DataFolders& folders, const std::string& name);
+/// Returns the robot's own motor, or nothing if its file is missing or wrong.
+std::optional<motor::Motor> own_motor(const input::DataFolders& folders, const robot::Robot& robot);
 robot::Robot robot_named(const input::DataFolders& folders, const std::string& name);
 
 }  // namespace heatsoak::duty

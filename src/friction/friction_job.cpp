@@ -97,18 +97,6 @@ std::string source_of(const FrictionJob& job) {
                               : fmt::format("friction test, {} and {} more logs", first, job.logs.size() - 1);
 }
 
-}  // namespace
-
-LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
-    : base::Failure(
-          base::ExitCode::bad_input,
-          "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
-          "if they are right"),
-      findings_(std::move(findings)) {}
-
-NothingIdentifiable::NothingIdentifiable(Reason reason)
-    : base::Failure(base::ExitCode::cannot_answer, "nothing is identifiable"), reason_(std::move(reason)) {}
-
 SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress) {
   SteadyFriction answer;
   if (job.writes_robot_file && !job.motor) {
@@ -166,6 +154,29 @@ RollOutFriction roll_out_friction(const FrictionJob& job, const base::Progress& 
                                               answer.result.wheel_damping_Nm_s_per_rad, source_of(job));
   }
   return answer;
+}
+
+}  // namespace
+
+LogsLookWrong::LogsLookWrong(std::vector<Finding> findings)
+    : base::Failure(
+          base::ExitCode::bad_input,
+          "units, signs or wheels of the logs look wrong; correct them in a mapping (--map) or in the robot's file, or use --as-is "
+          "if they are right"),
+      findings_(std::move(findings)) {}
+
+NothingIdentifiable::NothingIdentifiable(Reason reason)
+    : base::Failure(base::ExitCode::cannot_answer, "nothing is identifiable"), reason_(std::move(reason)) {}
+
+const std::string& robot_text(const FrictionAnswer& answer) {
+  return std::visit([](const FrictionRun& run) -> const std::string& { return run.robot_text; }, answer);
+}
+
+FrictionAnswer run_friction(const FrictionJob& job, const base::Progress& progress) {
+  if (job.method == FrictionMethod::roll_out) {
+    return roll_out_friction(job, progress);
+  }
+  return steady_friction(job, progress);
 }
 
 }  // namespace heatsoak::friction

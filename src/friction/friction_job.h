@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -15,9 +16,16 @@
 
 namespace heatsoak::friction {
 
+enum class FrictionMethod {
+  steady_state,  ///< voltage over speed while the robot drives steadily: friction and damping of every wheel
+  roll_out       ///< decelerations with open motors: damping alone
+};
+
 struct FrictionJob {
+  FrictionMethod method = FrictionMethod::steady_state;
   robot::Robot robot;
-  std::optional<motor::MotorValues> motor = {};  ///< motor that the robot drove with, if it is known
+  std::string motor_id = {};                     ///< motor that the robot drove with
+  std::optional<motor::MotorValues> motor = {};  ///< its values, if it has a file
   std::vector<std::string> logs;                 ///< at least one; files, or names as log_named() resolves them
   input::DataFolders folders = {};               ///< folders of log_named()
   std::string map = {};                          ///< mapping of foreign logs; empty: the file beside each log, if there is one
@@ -80,11 +88,13 @@ class NothingIdentifiable : public base::Failure {
   Reason reason_;
 };
 
-/// Fits friction and damping of every wheel to a steady-state test. Throws LogsLookWrong, NothingIdentifiable, and Failure (bad_input) for
-/// logs that cannot be read or are given twice, and for a robot file without a known motor.
-SteadyFriction steady_friction(const FrictionJob& job, const base::Progress& progress = {});
+using FrictionAnswer = std::variant<SteadyFriction, RollOutFriction>;
 
-/// Estimates damping from decelerations with open motors. Throws Failure as above; the motor must be known.
-RollOutFriction roll_out_friction(const FrictionJob& job, const base::Progress& progress = {});
+/// Returns the text of the robot's file with the measured friction; empty unless the job requests it.
+const std::string& robot_text(const FrictionAnswer& answer);
+
+/// Evaluates the test by the method of the job. Throws LogsLookWrong, NothingIdentifiable, and Failure (bad_input) for logs that cannot be
+/// read or are given twice, and without the values of the motor for a roll-out or a robot file.
+FrictionAnswer run_friction(const FrictionJob& job, const base::Progress& progress = {});
 
 }  // namespace heatsoak::friction

@@ -46,7 +46,7 @@ Text status_cell(check::Status status) {
 
 }  // namespace
 
-Document check_document(std::span<const check::Outcome> outcomes, bool is_update) {
+Document check_document(std::span<const check::Outcome> outcomes, bool is_update, const std::vector<std::string>& files) {
   Document document{.headline = conclusion(outcomes, is_update), .paragraphs = {}};
   const check::Check* before = nullptr;
   for (const check::Outcome& each : outcomes) {
@@ -80,6 +80,7 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
                                                      "commit the file: a limit that follows every value detects no change.",
                                                      loosened));
   }
+  document.data = check_json(outcomes, files);
   return document;
 }
 

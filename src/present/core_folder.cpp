@@ -5,12 +5,14 @@
 #include "derate/export_text.h"
 #include "present/derating.h"
 #include "present/parameter_table.h"
+#include "present/robot_notes.h"
 #include "present/shell_word.h"
 
 namespace heatsoak::present {
 
-Document core_folder_document(const firmware::CoreFolder& folder, const derate::Derating& derating, const firmware::CoreOptions& options,
-                              const std::string& out) {
+Document core_folder_document(const CoreInput& input, const firmware::GeneratedCore& core) {
+  const auto& [derating, folder] = core;
+  const auto& [robot, motor, options, out] = input;
   std::size_t bytes = 0;
   for (const firmware::CoreFile& file : folder.files) {
     bytes += file.content.size();
@@ -34,6 +36,9 @@ Document core_folder_document(const firmware::CoreFolder& folder, const derate::
     const bool is_unsafe = std::holds_alternative<firmware::ShadowModeChosen>(note);
     document.add_note(is_unsafe ? Severity::warning : Severity::note, to_string(note));
   }
+  add_robot_notes(document, robot);
+  document.data = core_folder_json(input, core);
+  add_notes(document.data, document.notes);
   return document;
 }
 

@@ -9,10 +9,15 @@
 
 namespace heatsoak::present {
 
-Document core_folder_document(const firmware::CoreFolder& folder, const derate::Derating& derating, const firmware::CoreOptions& options,
-                              const std::string& out);
+/// Names of what a drive core is generated for, and the folder `out`.
+struct CoreInput {
+  const robot::Robot& robot;
+  const motor::Motor& motor;
+  const firmware::CoreOptions& options;
+  const std::string& out;
+};
+Document core_folder_document(const CoreInput& input, const firmware::GeneratedCore& core);
 /// Without the keys of the notes, see add_notes().
-Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating& derating, const motor::Motor& motor,
-                      const firmware::CoreOptions& options, const std::string& out);
+Json core_folder_json(const CoreInput& input, const firmware::GeneratedCore& core);
 
 }  // namespace heatsoak::present

@@ -7,8 +7,8 @@
 
 namespace heatsoak::present {
 
-Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating& derating, const motor::Motor& motor,
-                      const firmware::CoreOptions& options, const std::string& out) {
+Json core_folder_json(const CoreInput& input, const firmware::GeneratedCore& core) {
+  const auto& [derating, folder] = core;
   const derate::Guarantee& checked = derating.guarantee;
   Json files = Json::array();
   for (const firmware::CoreFile& file : folder.files) {
@@ -17,9 +17,9 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
   return {{"schema", "heatsoak.core/1"},
           {"robot", derating.robot_id},
           {"motor", derating.motor_id},
-          {"out", out},
-          {"period_s", options.period_s},
-          {"shadow_mode", options.shadow_mode},
+          {"out", input.out},
+          {"period_s", input.options.period_s},
+          {"shadow_mode", input.options.shadow_mode},
           {"input_hash", {{"name", derate::kInputHash}, {"value", folder.hash}}},
           {"config_check_sum", fmt::format("{:08x}", folder.config_check_sum)},
           {"files", files},
@@ -36,7 +36,7 @@ Json core_folder_json(const firmware::CoreFolder& folder, const derate::Derating
             {"limp_current_A", rounded(folder.limp_current_A, 4)},
             {"braking_reserve_K", rounded(folder.braking_reserve_K, 3)},
             {"nodes", derating.observer.state_names()}}},
-          {"default_spreads", default_spreads_json({&motor, 1})}};
+          {"default_spreads", default_spreads_json({&input.motor, 1})}};
 }
 
 }  // namespace heatsoak::present

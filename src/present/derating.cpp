@@ -9,12 +9,14 @@
 
 #include "base/quantity.h"
 #include "base/version.h"
+#include "derate/derating_json.h"
 #include "derate/export_text.h"
 #include "derate/own_friction.h"
 #include "derate/power_off.h"
 #include "motor/datasheet_network.h"
 #include "present/evaluation.h"
 #include "present/motor_notes.h"
+#include "present/robot_notes.h"
 #include "present/verdict_words.h"
 
 namespace heatsoak::present {
@@ -177,15 +179,7 @@ std::string broken_words(const derate::TableCheck& check) {
   return fmt::format("no longer holds: {}; write it again with --out", why);
 }
 
-}  // namespace
-
-std::string limit_range_words(const derate::Derating& derating) {
-  return derating.rules.limits.winding_C < derating.nominal.winding_limit_C
-             ? fmt::format(" (lower end of the limit's range around {:.0f} °C)", derating.nominal.winding_limit_C)
-             : "";
-}
-
-Document derating_document(const derate::Derating& derating, const motor::Motor& motor) {
+Document document_of(const derate::Derating& derating, const motor::Motor& motor) {
   const derate::Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
@@ -226,6 +220,7 @@ Document derating_document(const derate::Derating& derating, const motor::Motor&
   return document;
 }
 
+/// Adds what changed since the file was written.
 void add_table_check(Document& document, const derate::Derating& derating, const derate::TableCheck& check) {
   const derate::TableComparison& found = check.found;
   document.headline.insert(document.headline.begin(), {fmt::format("{}: {}", check.committed.file.string(),
@@ -256,6 +251,25 @@ void add_table_check(Document& document, const derate::Derating& derating, const
                       fmt::format("The table was written by heatsoak {}, this program is {}: an upgrade may explain the difference.",
                                   check.committed.version, base::program_version()));
   }
+}
+
+}  // namespace
+
+std::string limit_range_words(const derate::Derating& derating) {
+  return derating.rules.limits.winding_C < derating.nominal.winding_limit_C
+             ? fmt::format(" (lower end of the limit's range around {:.0f} °C)", derating.nominal.winding_limit_C)
+             : "";
+}
+
+Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer) {
+  Document document = document_of(answer.derating, job.motor);
+  add_robot_notes(document, job.robot);
+  document.data = derate::derating_json(answer.derating);
+  if (answer.check) {
+    add_table_check(document, answer.derating, *answer.check);
+    document.data["check"] = table_check_json(*answer.check);
+  }
+  return document;
 }
 
 }  // namespace heatsoak::present

@@ -15,6 +15,6 @@ void Document::add_file(std::string_view name) {
   }
 }
 
-Document short_answer(std::string sentence) { return {.headline = {{std::move(sentence)}}, .paragraphs = {}}; }
+Document short_answer(std::string sentence, Json data) { return {.headline = {{std::move(sentence)}}, .data = std::move(data)}; }
 
 }  // namespace heatsoak::present

@@ -1,10 +1,12 @@
 // The answer of a command in text and tables, independent of how it is rendered.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "present/json.h"
 #include "report/chart.h"
 
 namespace heatsoak::present {
@@ -68,6 +70,7 @@ struct Document {
   std::vector<std::string> files = {};     ///< names of the files that the command writes
   std::vector<Listing> listings = {};      ///< shown last
   std::vector<report::Chart> charts = {};  ///< only HTML contains them
+  Json data = {};                          ///< the same answer for other programs; begins with the key "schema"
 
   void add_note(Severity severity, std::string_view words);
   /// Adds the name of a written file; ignores an empty name.
@@ -75,6 +78,6 @@ struct Document {
 };
 
 /// Returns a document that has only one sentence as its headline.
-Document short_answer(std::string sentence);
+Document short_answer(std::string sentence, Json data);
 
 }  // namespace heatsoak::present

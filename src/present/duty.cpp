@@ -8,6 +8,7 @@
 #include "base/quantity.h"
 #include "present/evaluation.h"
 #include "present/game_words.h"
+#include "present/robot_notes.h"
 #include "present/verdict_words.h"
 
 namespace heatsoak::present {
@@ -87,7 +88,10 @@ Document document_of(const duty::DutyAnswer& answer, const duty::GameDemand& gam
 }  // namespace
 
 Document duty_document(const duty::DutyAnswer& answer) {
-  return std::visit([&](const auto& content) { return document_of(answer, content); }, answer.content);
+  Document document = std::visit([&](const auto& content) { return document_of(answer, content); }, answer.content);
+  add_robot_notes(document, answer.robot);
+  document.data = duty_json(answer);
+  return document;
 }
 
 void add_duty_files(Document& document, const std::string& table, const std::string& description) {

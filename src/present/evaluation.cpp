@@ -372,6 +372,7 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
                       "The temperatures may be wrong by tens of kelvins where the thermal values of a motor are estimates: no manufacturer "
                       "publishes them (`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
+  document.data = evaluation_json(answer);
   return document;
 }
 

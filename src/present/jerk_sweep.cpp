@@ -61,6 +61,7 @@ Document jerk_sweep_document(const simulate::JerkSweep& sweep) {
                     "corrections of the drive core add to the force, so sliding begins somewhat below.");
   document.add_note(Severity::background,
                     "Slip and sliding: of a mean wheel per metre driven; error: distance between plan and robot, rms.");
+  document.data = jerk_sweep_json(sweep);
   return document;
 }
 

@@ -38,6 +38,8 @@ void add_notes(Json& json, std::span<const Note> notes) {
   }
 }
 
+std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 Json failure_json(const base::Failure& failure) {
   Json diagnostics = Json::array();
   for (const base::Diagnostic& each : failure.diagnostics()) {

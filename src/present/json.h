@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "base/diagnostic.h"
 
@@ -23,6 +24,9 @@ void add_never(Json& json, std::initializer_list<const char*> keys);
 
 /// Adds the keys "notes", the words of all notes, and "warnings", the words of those with the severity warning.
 void add_notes(Json& json, std::span<const Note> notes);
+
+/// Returns the JSON as lines of text. Bytes that are not UTF-8 become U+FFFD.
+std::string json_text(const Json& json);
 
 /// Returns the answer of a command that failed.
 Json failure_json(const base::Failure& failure);

@@ -41,6 +41,7 @@ Document lint_document(const duty::FilesLint& lint) {
   if (!listing.lines.empty()) {
     document.listings.push_back(std::move(listing));
   }
+  document.data = lint_json(lint);
   return document;
 }
 

@@ -1,22 +1,19 @@
-// Document and JSON of `list`.
+// The answer of `list`.
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "input/data_folders.h"
 #include "present/document.h"
-#include "present/json.h"
 
 namespace heatsoak::present {
 
-struct NamedThing {
-  std::string id;
-  std::string summary;
-};
+/// Returns the kinds of names that can be listed, such as "motors".
+std::vector<std::string> listed_kinds();
 
-/// Returns a table without a head and without a headline, so that the quiet form shows only the names.
-Document list_document(std::span<const NamedThing> things);
-Json list_json(std::string_view kind, std::span<const NamedThing> things);
+/// Returns ids and summaries as a table without a head and without a headline, so that the quiet form shows only the ids. Throws Failure
+/// (bad_input) for another kind, and if a folder has no files.
+Document list_document(const std::string& kind, const input::DataFolders& folders);
 
 }  // namespace heatsoak::present

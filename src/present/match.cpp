@@ -211,6 +211,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
     add_lines(document.notes, default_spreads_text({&answer.motor, 1}), Severity::note);
   }
   add_assumed_friction(document, answer.robot);
+  document.data = match_json(answer);
   return document;
 }
 
@@ -235,6 +236,7 @@ Document load_simulation_document(const select::LoadSimulation& simulation) {
   add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
   add_robot_notes(document, robot);
   add_motor_notes(document, {&motor, 1});
+  document.data = load_simulation_json(simulation);
   return document;
 }
 

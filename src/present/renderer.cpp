@@ -29,6 +29,10 @@ std::string terminal_text(const Document& document, const RenderOptions& options
   return std::ranges::find(all_renderers(), "terminal", &Renderer::name)->render(document, options);
 }
 
+std::string rendered_as(std::string_view name, const Document& document) {
+  return std::ranges::find(all_renderers(), name, &Renderer::name)->render(document, {.explains = true});
+}
+
 std::string rendered_for(const std::string& file, const Document& document) {
   const std::string ending = std::filesystem::path(file).extension().string();
   std::vector<std::string_view> known;
@@ -41,8 +45,8 @@ std::string rendered_for(const std::string& file, const Document& document) {
     }
     known.push_back(each.file_ending);
   }
-  throw base::Failure(base::ExitCode::bad_input,
-                      fmt::format("{}: there is no format '{}'; expected a name that ends in {}", file, ending, fmt::join(known, " or ")));
+  throw base::Failure(base::ExitCode::bad_input, fmt::format("{}: there is no format '{}'; expected a name that ends in one of {}", file,
+                                                             ending, fmt::join(known, ", ")));
 }
 
 std::vector<Note> by_urgency(std::vector<Note> notes) {

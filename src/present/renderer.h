@@ -37,6 +37,8 @@ std::string terminal_text(const Document& document, const RenderOptions& options
 
 /// Formats the whole document for the file's extension. Throws Failure (bad_input) that lists the known extensions.
 std::string rendered_for(const std::string& file, const Document& document);
+/// Formats the whole document with the renderer of this name, such as "json".
+std::string rendered_as(std::string_view name, const Document& document);
 
 /// Sorts notes by falling severity; the order within one severity is kept.
 std::vector<Note> by_urgency(std::vector<Note> notes);

@@ -62,6 +62,7 @@ Document steady_document(const motor::OnOffAnswer& answer) {
     add_temperatures(document, answer);
   }
   add_motor_notes(document, {&answer.motor, 1});
+  document.data = steady_json(answer);
   return document;
 }
 

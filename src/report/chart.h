@@ -1,6 +1,7 @@
 // Content of a chart, independent of how it is drawn.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,6 +71,9 @@ void require_drawing(std::string_view what, std::string_view remedy);
 
 /// Draws `chart` as SVG; needs no display. Throws Failure (bug) if the drawing library is missing or fails.
 std::string draw_svg(const Chart& chart);
+
+/// Endings of the files that draw_picture() can write.
+inline constexpr std::array<std::string_view, 2> kPictureEndings{".svg", ".png"};
 
 /// Returns the bytes of a picture in the format of the file's extension: PNG for ".png" with two pixels per chart pixel, else SVG.
 std::string draw_picture(const Chart& chart, const std::string& file);

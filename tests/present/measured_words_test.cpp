@@ -240,7 +240,7 @@ TEST(Calibration, JsonKeepsTheSeverityOfWarnings) {
   EXPECT_EQ(json["notes"].size(), 2U);
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["warnings"][0], words_of(answer.calibration.findings[1]));
-  EXPECT_EQ(calibration_document({}, answer, {}).notes.size(), 2U);
+  EXPECT_EQ(calibration_document({}, answer, {}, "model.toml").notes.size(), 2U);
 }
 
 TEST(Prediction, JsonKeepsTheSeverityOfWarnings) {

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/version.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
 
@@ -220,6 +222,26 @@ TEST(Markdown, has_every_column_and_note_and_escapes_its_own_signs) {
   EXPECT_THAT(text, HasSubstr("|  | motor | peak / °C | rms / A | data |\n|---:|---|---:|---:|---:|\n| 1 | a\\|b\\_c |"));
   EXPECT_THAT(text, HasSubstr("- third\n"));
   EXPECT_THROW(rendered_for("x.docx", document), std::exception);
+}
+
+TEST(JsonAnswer, is_the_data_with_the_version_after_the_schema) {
+  Document document = example();
+  document.data = {{"schema", "heatsoak.example/1"}, {"peak_C", 98.25}, {"name", "a\xff"}};
+  const std::string text = rendered_for("x.json", document);
+  EXPECT_EQ(text, "{\n  \"schema\": \"heatsoak.example/1\",\n  \"version\": " + Json(base::program_version()).dump() +
+                      ",\n  \"peak_C\": 98.25,\n  \"name\": \"a\xEF\xBF\xBD\"\n}\n");
+  EXPECT_EQ(rendered_as("json", document), text);
+}
+
+TEST(Renderers, a_wrong_ending_is_answered_with_all_known_ones) {
+  try {
+    static_cast<void>(rendered_for("x.docx", example()));
+    FAIL();
+  } catch (const base::Failure& failure) {
+    for (const Renderer& each : all_renderers()) {
+      EXPECT_THAT(failure.what(), HasSubstr(std::string(each.file_ending)));
+    }
+  }
 }
 
 }  // namespace

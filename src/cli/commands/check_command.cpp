@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/quantity.h"
@@ -77,11 +76,10 @@ base::ExitCode run(CheckOptions& options, Session& session) {
   if (!options.junit.empty()) {
     session.write(options.junit, present::junit_xml(answer.outcomes, base::program_version()));
   }
-  present::Document document = present::check_document(answer.outcomes, options.job.updates);
+  present::Document document = present::check_document(answer.outcomes, options.job.updates, options.job.files);
   document.add_file(options.junit);
   session.show(document);
   write_github(answer.outcomes, session);
-  session.answer(present::check_json(answer.outcomes, options.job.files));
   return answer.passed() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 

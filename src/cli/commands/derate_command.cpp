@@ -2,7 +2,6 @@
 
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,10 +10,8 @@
 #include "cli/quantity_option.h"
 #include "cli/sensor_options.h"
 #include "derate/derating_job.h"
-#include "derate/derating_json.h"
 #include "duty/named_files.h"
 #include "present/derating.h"
-#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -72,19 +69,12 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
   job.committed = options.committed;
   const derate::DeratingAnswer answer = with_progress("searching the safety factor on heat", 5.0,
                                                       [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
-  present::Document document = present::derating_document(answer.derating, job.motor);
-  present::add_robot_notes(document, job.robot);
+  present::Document document = present::derating_document(job, answer);
   if (!options.out.empty()) {
     session.write(options.out, answer.text);
     document.add_file(options.out);
   }
-  present::Json json = derate::derating_json(answer.derating);
-  if (answer.check) {
-    present::add_table_check(document, answer.derating, *answer.check);
-    json["check"] = present::table_check_json(*answer.check);
-  }
   session.show(document);
-  session.answer(json);
   return answer.holds() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -17,7 +16,6 @@
 #include "duty/named_files.h"
 #include "present/duty.h"
 #include "present/game_words.h"
-#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -87,7 +85,6 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
   }
   const duty::DutyAnswer answer = answer_of(job);
   present::Document document = present::duty_document(answer);
-  present::add_robot_notes(document, *robot);
   if (!options.out.empty()) {
     std::filesystem::path description = options.out;
     description.replace_extension(".toml");
@@ -95,7 +92,6 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
     present::add_duty_files(document, options.out, description.string());
   }
   session.show(document);
-  session.answer(present::duty_json(answer));
   return base::ExitCode::done;
 }
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,7 +93,6 @@ base::ExitCode run(const EvaluateOptions& options, Session& session) {
     session.draw(document, options.plot, present::evaluation_chart(answer));
   }
   session.show(document);
-  session.answer(present::evaluation_json(answer));
   const auto place = std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin();
   const bool fails = place == 0 ? answer.worst_verdict() != select::Verdict::pass || answer.is_undecided()
                                 : answer.worst_verdict() >= static_cast<select::Verdict>(place);

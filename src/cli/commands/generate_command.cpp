@@ -2,7 +2,6 @@
 
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/version.h"
@@ -13,7 +12,6 @@
 #include "firmware/core_files.h"
 #include "firmware/staged_folder.h"
 #include "present/core_folder.h"
-#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -39,12 +37,7 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
   });
   const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
   session.complete_with([staged] { staged->commit(); });
-  present::Document document = present::core_folder_document(core.folder, core.derating, options.core, options.out);
-  present::add_robot_notes(document, *robot);
-  session.show(document);
-  present::Json json = present::core_folder_json(core.folder, core.derating, motor, options.core, options.out);
-  present::add_notes(json, document.notes);
-  session.answer(json);
+  session.show(present::core_folder_document({*robot, motor, options.core, options.out}, core));
   return base::ExitCode::done;
 }
 

@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,6 @@ namespace {
 base::ExitCode run(const std::vector<std::string>& names, Session& session) {
   const duty::FilesLint lint = duty::lint_files(names, session.folders());
   session.show(present::lint_document(lint));
-  session.answer(present::lint_json(lint));
   return lint.count(motor::LintFinding::Level::error) + lint.count(motor::LintFinding::Level::warning) == 0
              ? base::ExitCode::done
              : base::ExitCode::limit_exceeded;

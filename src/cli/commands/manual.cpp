@@ -3,7 +3,6 @@
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/help_page.h"
@@ -26,8 +25,8 @@ base::ExitCode run(const ManualOptions& options, const CLI::App& program, Sessio
     session.write(folder / (is_man ? fmt::format("heatsoak-{}.1", page.verb) : page.verb + ".md"),
                   is_man ? man_page_of(page) : markdown_of(page));
   }
-  session.show(present::short_answer(fmt::format("{} in {}", base::counted(pages.size() + 1, "page"), folder.string())));
-  session.answer({{"schema", "heatsoak.manual/1"}, {"pages", pages.size() + 1}, {"folder", folder.string()}});
+  session.show(present::short_answer(fmt::format("{} in {}", base::counted(pages.size() + 1, "page"), folder.string()),
+                                     {{"schema", "heatsoak.manual/1"}, {"pages", pages.size() + 1}, {"folder", folder.string()}}));
   return base::ExitCode::done;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "present/document.h"
@@ -29,8 +28,8 @@ base::ExitCode run(const NewOptions& options, Session& session) {
       std::ranges::find_if(texts, [&](const embedded::Text& each) { return each.path.ends_with("/" + options.kind + ".toml"); });
   session.write(options.file, std::string(found->text));
   session.show(present::short_answer(
-      fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, present::shell_word(options.file))));
-  session.answer({{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}});
+      fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, present::shell_word(options.file)),
+      {{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}}));
   return base::ExitCode::done;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.h"
@@ -69,7 +68,6 @@ base::ExitCode run_load(const SimulateOptions& options, select::LoadJob job, Ses
   }
   show(present::load_simulation_document(simulation), options, session,
        [&] { return present::verdict_chart({simulation.result}, simulation.robot, simulation.duty); });
-  session.answer(present::load_simulation_json(simulation));
   return simulation.result.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
@@ -93,7 +91,6 @@ base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job,
     session.write(options.out, std::move(match.runs.front().csv));
   }
   show(present::match_document(match), options, session, [&] { return present::match_chart(match); });
-  session.answer(present::match_json(match));
   return match.verdict() == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 
@@ -105,7 +102,6 @@ base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& rob
     return simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress);
   });
   show(present::jerk_sweep_document(sweep), options, session, [&] { return present::jerk_sweep_chart(sweep); });
-  session.answer(present::jerk_sweep_json(sweep));
   return base::ExitCode::done;
 }
 

@@ -3,7 +3,6 @@
 #include <CLI/App.hpp>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -29,7 +28,6 @@ base::ExitCode run(const SteadyOptions& options, Session& session) {
   named.throw_if_any();
   const motor::OnOffAnswer answer = motor::under_on_off_current(motor::under(*motor, options.conditions), options.current);
   session.show(present::steady_document(answer));
-  session.answer(present::steady_json(answer));
   return answer.is_over_limit ? base::ExitCode::limit_exceeded : base::ExitCode::done;
 }
 

@@ -125,7 +125,7 @@ std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer
 }
 
 Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
-                              std::span<const recording::LogReading> readings) {
+                              std::span<const recording::LogReading> readings, const std::string& out) {
   const calibration::Calibration& result = answer.calibration;
   Document document{.headline = headline_of(motor, answer)};
   document.paragraphs.push_back(heat_words(result));
@@ -145,6 +145,8 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   for (const Note& each : calibration_notes(answer, readings)) {
     document.add_note(each.severity, each.words);
   }
+  document.add_file(out);
+  document.data = calibration_json(motor, answer, readings, out);
   return document;
 }
 

@@ -11,12 +11,12 @@
 
 namespace heatsoak::present {
 
-/// Returns the document of a calibration. `readings` are the reports of the logs.
+/// Returns the document of a calibration. `readings` are the reports of the logs, `out` is the name of the model's file.
 Document calibration_document(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
-                              std::span<const recording::LogReading> readings);
+                              std::span<const recording::LogReading> readings, const std::string& out);
 /// Returns the notes: warnings about units and grown errors first, remarks about the logs last.
 std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings);
-/// Returns the answer as JSON. `out` is the name of the model's file.
+/// Returns the answer as JSON, the data of the document.
 Json calibration_json(const motor::Motor& motor, const calibration::CalibrationAnswer& answer,
                       std::span<const recording::LogReading> readings, const std::string& out);
 

@@ -281,6 +281,33 @@ std::string reason_in_words(const attribution::Refusal& refused) {
 
 }  // namespace
 
+std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  bool is_class = false;
+  for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
+    if (!effect.is_from_catalogue) {
+      continue;
+    }
+    is_class = is_class || !effect.confusable_with.empty();
+    names.push_back(effect.confusable_with.empty() ? effect.id
+                                                   : fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, " or ")));
+  }
+  const std::string lacks =
+      fmt::format("the model lacks {}{}", fmt::join(names, " and "), is_class ? ", which these runs do not distinguish" : "");
+  switch (diagnosis.verdict) {
+    case diagnosis::DiagnosisVerdict::nothing_missing:
+      return "no effect is missing";
+    case diagnosis::DiagnosisVerdict::effect_found:
+      return lacks;
+    case diagnosis::DiagnosisVerdict::unexplained:
+      return names.empty() ? "heat is missing that no effect of the catalogue explains"
+                           : lacks + ", and further heat that no effect of the catalogue explains";
+    case diagnosis::DiagnosisVerdict::not_identifiable:
+      break;
+  }
+  return "these runs do not determine whether an effect is missing";
+}
+
 std::vector<std::string> unexplained_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> all;
   const auto is_shared = [](const diagnosis::Unexplained& a, const diagnosis::Unexplained& b) {

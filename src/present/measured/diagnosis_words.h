@@ -10,6 +10,9 @@
 
 namespace heatsoak::present {
 
+/// Returns the verdict as a clause: "the model lacks windage".
+std::string verdict_words(const diagnosis::Diagnosis& diagnosis);
+
 /// Returns the diagnosis as a list of sentences. The errors are those of the hold-out runs if there are any, else those of the training
 /// runs.
 std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answer);

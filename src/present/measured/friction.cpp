@@ -9,6 +9,7 @@
 
 #include "base/quantity.h"
 #include "present/measured/friction_words.h"
+#include "present/robot_notes.h"
 
 namespace heatsoak::present {
 namespace {
@@ -113,18 +114,29 @@ std::string what_rolls(const friction::RollOutRun& run) {
                                                     : fmt::format("wheel {} lifted", run.wheel.value() + 1);
 }
 
-}  // namespace
+/// Returns one sentence for each wheel whose measurements contradict the assumed friction law.
+std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
+    if (const friction::LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
+      found.push_back(fmt::format(
+          "the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
+          "does not hold there; the intervals of a and b are wider to allow for this error",
+          i + 1, base::significant(lack.left_V.value(), 2), base::significant(lack.repeats_V.value(), 2), words_of(lack.repeats)));
+    }
+  }
+  return found;
+}
 
-Document friction_document(const robot::Robot& robot, const FrictionAnswer& answer) {
-  const auto learned = std::ranges::count_if(answer.fit.wheels, &friction::WheelFriction::is_learned);
+Document document_of(const friction::FrictionJob& job, const friction::SteadyFriction& answer) {
   Document document{
-      .headline = {{fmt::format("{}: the friction of {} of {} wheels is identifiable.", robot.id, learned, answer.fit.wheels.size()),
-                    learned == std::ssize(answer.fit.wheels) ? Tone::good : Tone::undecided}},
-      .paragraphs = {fmt::format("{}, {} rows, {} of them steady in {} on {}; {} {}.", plural_of(answer.logs, "log"), answer.steady.rows,
-                                 answer.steady.rows_steady, plural_of(static_cast<std::size_t>(answer.steady.legs), "leg"),
-                                 plural_of(static_cast<std::size_t>(answer.fit.headings), "heading"),
-                                 plural_of(static_cast<std::size_t>(answer.steady.return_legs), "return leg"),
-                                 answer.uses_return_legs ? "used too" : "left out")},
+      .headline = {{fmt::format("{}: the friction of {} is identifiable.", job.robot.id, identifiable_wheels(answer.fit)),
+                    std::ranges::all_of(answer.fit.wheels, &friction::WheelFriction::is_learned) ? Tone::good : Tone::undecided}},
+      .paragraphs = {fmt::format(
+          "{}, {} rows, {} of them steady in {} on {}; {} {}.", plural_of(job.logs.size(), "log"), answer.steady.rows,
+          answer.steady.rows_steady, plural_of(static_cast<std::size_t>(answer.steady.legs), "leg"),
+          plural_of(static_cast<std::size_t>(answer.fit.headings), "heading"),
+          plural_of(static_cast<std::size_t>(answer.steady.return_legs), "return leg"), job.use_return_legs ? "used too" : "left out")},
       .tables = {wheel_table(answer.fit, answer.steady.rows)}};
   if (answer.error.after_V) {
     document.paragraphs.push_back(fmt::format(
@@ -140,36 +152,10 @@ Document friction_document(const robot::Robot& robot, const FrictionAnswer& answ
   return document;
 }
 
-std::vector<std::string> lack_of_fit_words(const friction::FrictionFit& fit) {
-  std::vector<std::string> found;
-  for (std::size_t i = 0; i < fit.wheels.size(); ++i) {
-    if (const friction::LackOfFit& lack = fit.wheels[i].lack; lack.is_found) {
-      found.push_back(fmt::format(
-          "the residual of wheel {} depends on θ: {} V rms beyond the {} V by which {} differ. The law a sin(θ+φ) + b sign "
-          "does not hold there; the intervals of a and b are wider to allow for this error",
-          i + 1, base::significant(lack.left_V.value(), 2), base::significant(lack.repeats_V.value(), 2), words_of(lack.repeats)));
-    }
-  }
-  return found;
-}
-
-std::optional<friction::Estimate> damping_with_back_emf(const robot::DriveConstants& drive,
-                                                        const std::optional<friction::Estimate>& mechanical_Nm_s_per_rad) {
-  if (!mechanical_Nm_s_per_rad) {
-    return std::nullopt;
-  }
-  const auto volts = [&](double damping) { return robot::steady_voltage_V(drive, damping, 1.0); };
-  friction::Estimate found{.value = volts(mechanical_Nm_s_per_rad->value)};
-  if (const auto& interval = mechanical_Nm_s_per_rad->interval) {
-    found.interval = {volts(interval->low), volts(interval->high)};
-  }
-  return found;
-}
-
-Document roll_out_document(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
-                           std::size_t logs) {
-  Document document{.headline = {{fmt::format("{}: {} in {}, motors assumed open.", robot.id, plural_of(result.runs.size(), "roll-out"),
-                                              plural_of(logs, "log"))}},
+Document document_of(const friction::FrictionJob& job, const friction::RollOutFriction& answer) {
+  const friction::RollOutResult& result = answer.result;
+  Document document{.headline = {{fmt::format("{}: {} in {}, motors assumed open.", job.robot.id, plural_of(result.runs.size(), "roll-out"),
+                                              plural_of(job.logs.size(), "log"))}},
                     .paragraphs = {"Torque and damping of a wheel without the motor's back-EMF; d with it."}};
   const auto fitted = [](const std::optional<friction::Estimate>& estimate, int decimals, double scale) {
     return estimate_text(estimate, decimals, scale, "no interval");
@@ -180,7 +166,7 @@ Document roll_out_document(const robot::Robot& robot, const friction::RollOutRes
     wheels.rows.push_back({{fmt::format("{}", i + 1)},
                            {fitted(result.wheel_torque_Nm[i], 2, 1e3)},
                            {fitted(mechanical, 4, 1e3)},
-                           {fitted(damping_with_back_emf(drive, mechanical), 4, 1.0)}});
+                           {fitted(damping_with_back_emf(answer.drive, mechanical), 4, 1.0)}});
   }
   Table runs{
       .title = "Roll-outs, values per wheel",
@@ -197,11 +183,10 @@ Document roll_out_document(const robot::Robot& robot, const friction::RollOutRes
   return document;
 }
 
-FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const friction::FrictionRun& run,
-                                 const std::vector<std::string>& of_fit) {
-  FrictionRemarks remarks{has_motor ? std::optional(motor) : std::nullopt, {}, words_of(run.suspicions)};
-  if (!has_motor) {
-    remarks.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", motor));
+FrictionRemarks remarks_of(const friction::FrictionJob& job, const friction::FrictionRun& run, const std::vector<std::string>& of_fit) {
+  FrictionRemarks remarks{.findings = {}, .suspicions = words_of(run.suspicions)};
+  if (!job.motor) {
+    remarks.findings.push_back(fmt::format("there is no file of the robot's motor '{}'; name a motor with --motor", job.motor_id));
   }
   for (const friction::FrictionFinding& each : run.findings) {
     remarks.findings.push_back(words_of(each));
@@ -210,13 +195,52 @@ FrictionRemarks friction_remarks(const std::string& motor, bool has_motor, const
   return remarks;
 }
 
-void add_findings(Document& document, std::span<const std::string> findings, std::span<const std::string> suspicions) {
-  for (const std::string& suspicion : suspicions) {
+std::vector<std::string> words_of_fit(const friction::SteadyFriction& found) { return lack_of_fit_words(found.fit); }
+std::vector<std::string> words_of_fit(const friction::RollOutFriction& /*found*/) { return {}; }
+
+/// Adds the findings as notes and the suspicions as warnings.
+void add_remarks(Document& document, const FrictionRemarks& remarks) {
+  for (const std::string& suspicion : remarks.suspicions) {
     document.add_note(Severity::warning, fmt::format("suspicious: {}", suspicion));
   }
-  for (const std::string& finding : findings) {
+  for (const std::string& finding : remarks.findings) {
     document.add_note(Severity::note, finding);
   }
+}
+
+}  // namespace
+
+std::string identifiable_wheels(const friction::FrictionFit& fit) {
+  return fmt::format("{} of {} wheels", std::ranges::count_if(fit.wheels, &friction::WheelFriction::is_learned), fit.wheels.size());
+}
+
+std::optional<friction::Estimate> damping_with_back_emf(const robot::DriveConstants& drive,
+                                                        const std::optional<friction::Estimate>& mechanical_Nm_s_per_rad) {
+  if (!mechanical_Nm_s_per_rad) {
+    return std::nullopt;
+  }
+  const auto volts = [&](double damping) { return robot::steady_voltage_V(drive, damping, 1.0); };
+  friction::Estimate found{.value = volts(mechanical_Nm_s_per_rad->value)};
+  if (const auto& interval = mechanical_Nm_s_per_rad->interval) {
+    found.interval = {volts(interval->low), volts(interval->high)};
+  }
+  return found;
+}
+
+Document friction_document(const friction::FrictionJob& job, const friction::FrictionAnswer& answer) {
+  return std::visit(
+      [&](const auto& found) {
+        Document document = document_of(job, found);
+        const FrictionRemarks remarks = remarks_of(job, found, words_of_fit(found));
+        add_remarks(document, remarks);
+        add_robot_notes(document, job.robot);
+        for (const friction::WrittenAsZero& each : found.notes) {
+          document.add_note(Severity::note, words_of(each));
+        }
+        document.data = friction_json(job, found, remarks);
+        return document;
+      },
+      answer);
 }
 
 }  // namespace heatsoak::present

@@ -7,6 +7,10 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <variant>
+
+#include "base/quantity.h"
+#include "present/measured/friction.h"
 
 namespace heatsoak::present {
 namespace {
@@ -224,18 +228,20 @@ class Drives {
   std::vector<std::pair<const friction::SteadyPart*, int>> parts_;
 };
 
-}  // namespace
-
-report::Chart friction_chart(const friction::FrictionFit& fit, const std::string& robot, const std::string& subtitle) {
+/// Offset and damping of every heading over the direction of travel.
+report::Chart heading_chart(const std::string& verdict, const friction::SteadyFriction& found) {
+  const friction::FrictionFit& fit = found.fit;
   report::Chart chart;
-  chart.title = fmt::format("Friction of {} over the direction of travel", robot);
+  chart.title = verdict;
   const bool has_intervals = std::ranges::any_of(fit.lines, [](const std::vector<friction::HeadingLine>& lines) {
     return std::ranges::any_of(lines, [](const friction::HeadingLine& line) { return line.offset_V.interval.has_value(); });
   });
   const bool is_given =
       std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
-  chart.subtitle = subtitle + (has_intervals ? "; vertical lines: 95 % intervals of each heading alone, from the scatter of all" : "") +
-                   (is_given ? "; all at one speed, so the expected damping is used" : "");
+  chart.subtitle =
+      fmt::format("Friction over the direction of travel, from {} legs on {} headings{}{}", found.steady.parts.size(), fit.headings,
+                  has_intervals ? "; vertical lines: 95 % intervals of each heading alone, from the scatter of all" : "",
+                  is_given ? "; all at one speed, so the expected damping is used" : "");
   chart.x_label = "direction of travel in the robot's frame / °";
   for (const bool of_damping : {false, true}) {
     if (report::ChartPanel panel = heading_panel(fit, of_damping); has_points(panel)) {
@@ -245,22 +251,42 @@ report::Chart friction_chart(const friction::FrictionFit& fit, const std::string
   return chart;
 }
 
-report::Chart voltage_chart(const friction::SteadyParts& steady, const friction::FrictionFit& fit, const robot::Kinematics& kinematics,
-                            const std::string& robot, const friction::FitSettings& settings) {
+report::Chart voltage_chart(const std::string& verdict, const friction::FrictionJob& job, const friction::SteadyFriction& found) {
   report::Chart chart;
-  chart.title = fmt::format("Voltage over wheel speed of {}", robot);
-  chart.subtitle = fmt::format("{} steady intervals; wheels that should stand are left out", steady.parts.size());
+  chart.title = verdict;
+  chart.subtitle =
+      fmt::format("Voltage over wheel speed in {} steady intervals; wheels that should stand are left out", found.steady.parts.size());
   chart.x_label = "wheel speed / rad/s";
-  const Drives drives(steady, fit, kinematics, settings);
+  const robot::Kinematics kinematics = robot::make_kinematics(job.robot);
+  const Drives drives(found.steady, found.fit, kinematics, found.settings);
   for (const std::optional<report::ChartPanel>& panel : {drives.of_one_heading(), drives.of_rotation()}) {
     if (panel) {
       chart.panels.push_back(*panel);
     }
   }
-  if (fit.headings > 0) {
+  if (found.fit.headings > 0) {
     chart.panels.push_back(drives.less_friction());
   }
   return chart;
+}
+
+}  // namespace
+
+std::vector<report::Chart> friction_charts(const friction::FrictionJob& job, const friction::FrictionAnswer& answer) {
+  const auto* const found = std::get_if<friction::SteadyFriction>(&answer);
+  if (found == nullptr) {
+    return {};
+  }
+  std::string verdict = fmt::format("{}: friction of {} identifiable", job.robot.name, identifiable_wheels(found->fit));
+  if (found->error.after_V) {
+    verdict += fmt::format(", hold-out error {} V", base::significant(*found->error.after_V, 2));
+  }
+  std::vector<report::Chart> charts;
+  if (report::Chart chart = heading_chart(verdict, *found); !chart.panels.empty()) {
+    charts.push_back(std::move(chart));
+  }
+  charts.push_back(voltage_chart(verdict, job, *found));
+  return charts;
 }
 
 }  // namespace heatsoak::present

@@ -8,6 +8,9 @@ namespace {
 
 Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
+/// Returns the id of the motor, or null if it has no file.
+Json motor_json(const friction::FrictionJob& job) { return job.motor ? Json(job.motor_id) : Json(); }
+
 Json json(const std::optional<friction::Estimate>& estimate) {
   const std::optional<friction::Interval> interval = estimate ? estimate->interval : std::nullopt;
   return {{"value", estimate ? Json(estimate->value) : Json()},
@@ -46,20 +49,20 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
 
 }  // namespace
 
-Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, const FrictionRemarks& remarks) {
-  const friction::SteadyParts& steady = answer.steady;
+Json friction_json(const friction::FrictionJob& job, const friction::SteadyFriction& found, const FrictionRemarks& remarks) {
+  const friction::SteadyParts& steady = found.steady;
   return {{"schema", "heatsoak.friction/1"},
           {"method", "steady_state"},
-          {"robot", robot.id},
-          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
-          {"wheels", wheels_json(answer.fit, answer.error, steady.rows)},
+          {"robot", job.robot.id},
+          {"motor", motor_json(job)},
+          {"wheels", wheels_json(found.fit, found.error, steady.rows)},
           {"before",
-           {{"rmse", number_or_null(answer.error.before_V)},
+           {{"rmse", number_or_null(found.error.before_V)},
             {"unit", "V"},
-            {"from", answer.expected_from ? words_of(*answer.expected_from) : ""}}},
-          {"after", {{"rmse", number_or_null(answer.error.after_V)}, {"unit", "V"}}},
-          {"headings", answer.fit.headings},
-          {"headings_held_out", answer.error.headings},
+            {"from", found.expected_from ? words_of(*found.expected_from) : ""}}},
+          {"after", {{"rmse", number_or_null(found.error.after_V)}, {"unit", "V"}}},
+          {"headings", found.fit.headings},
+          {"headings_held_out", found.error.headings},
           {"rows", steady.rows},
           {"rows_steady", steady.rows_steady},
           {"legs", steady.legs},
@@ -68,8 +71,8 @@ Json friction_json(const robot::Robot& robot, const FrictionAnswer& answer, cons
           {"suspicions", remarks.suspicions}};
 }
 
-Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& result, const robot::DriveConstants& drive,
-                   const FrictionRemarks& remarks) {
+Json friction_json(const friction::FrictionJob& job, const friction::RollOutFriction& found, const FrictionRemarks& remarks) {
+  const friction::RollOutResult& result = found.result;
   Json wheels = Json::array();
   for (std::size_t i = 0; i < result.wheel_damping_Nm_s_per_rad.size(); ++i) {
     const std::optional<friction::Estimate>& mechanical = result.wheel_damping_Nm_s_per_rad[i];
@@ -78,7 +81,7 @@ Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& res
       used += !run.wheel || run.wheel == static_cast<int>(i) ? static_cast<std::size_t>(run.rows_used) : 0U;
     }
     wheels.push_back({{"index", i + 1},
-                      {"damping_V_s_per_rad", json(damping_with_back_emf(drive, mechanical))},
+                      {"damping_V_s_per_rad", json(damping_with_back_emf(found.drive, mechanical))},
                       {"a_V", json(std::nullopt)},
                       {"b_V", json(std::nullopt)},
                       {"phase_rad", json(std::nullopt)},
@@ -90,8 +93,8 @@ Json roll_out_json(const robot::Robot& robot, const friction::RollOutResult& res
   }
   return {{"schema", "heatsoak.friction/1"},
           {"method", "roll_out"},
-          {"robot", robot.id},
-          {"motor", remarks.motor_id ? Json(*remarks.motor_id) : Json()},
+          {"robot", job.robot.id},
+          {"motor", motor_json(job)},
           {"wheels", wheels},
           {"before", {{"rmse", Json()}}},
           {"after", {{"rmse", Json()}}},

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/quantity.h"
+#include "present/measured/log_json.h"
 #include "present/measured/log_words.h"
 #include "present/parameter_table.h"
 
@@ -110,7 +111,55 @@ void add_fitness(Document& document, const std::string& name, const char* what, 
                                fitness.is_good() ? Tone::good : Tone::bad});
 }
 
+void add_log(Document& document, const recording::InspectedLog& log) {
+  const recording::Recording& recording = log.condensed.rows();
+  const recording::RecordingReport& report = log.report;
+  const recording::DataQuality& quality = log.quality;
+  // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
+  const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
+  const bool has_wheels = has([](const recording::Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
+  const bool has_temperatures =
+      has([](const recording::Channel& channel) { return channel.quantity.kind == recording::QuantityKind::temperature; });
+  const std::string name = recording.file.string();
+  if (has_temperatures || !quality.drive.is_good()) {
+    add_fitness(document, name, "thermal models", quality.thermal);
+  }
+  if (has_wheels || !quality.thermal.is_good()) {
+    add_fitness(document, name, "wheel models", quality.drive);
+  }
+  document.tables.push_back(summary_table(recording.name, recording, report, quality));
+  document.tables.push_back(channel_table(quality));
+  for (const recording::Suspicion& suspicion : quality.suspicions) {
+    document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, words_of(suspicion)));
+  }
+  for (const std::string& sentence : left_out_sentences(report)) {
+    document.add_note(Severity::note, fmt::format("{}: left out: {}", recording.name, sentence));
+  }
+  for (const recording::ReadingNote& note : report.notes) {
+    document.add_note(Severity::note, fmt::format("{}: {}", recording.name, words_of(note)));
+  }
+}
+
 }  // namespace
+
+Document logs_document(std::span<const recording::InspectedLog> logs) {
+  Document document;
+  Json all = Json::array();
+  for (const recording::InspectedLog& log : logs) {
+    add_log(document, log);
+    all.push_back(log_json(log));
+  }
+  document.data = {{"schema", "heatsoak.log/1"}, {"logs", all}};
+  return document;
+}
+
+Document conversion_document(const recording::ConvertedLog& log, const std::string& out) {
+  Document document =
+      short_answer(fmt::format("{} of {} rows and {} channels converted.", log.report.rows_kept, log.report.rows_in_file, log.channels),
+                   conversion_json(log, out));
+  document.add_file(out);
+  return document;
+}
 
 std::vector<std::string> left_out_sentences(const recording::RecordingReport& report) {
   std::vector<std::string> sentences;
@@ -139,33 +188,6 @@ std::vector<std::string> reading_words(std::span<const recording::LogReading> re
     }
   }
   return all;
-}
-
-void add_log(Document& document, const recording::Recording& recording, const recording::RecordingReport& report,
-             const recording::DataQuality& quality) {
-  // A thermal log without wheel channels gets no remark about wheels, and a drive log none about heat.
-  const auto has = [&](auto is_of) { return std::ranges::any_of(recording.channels, is_of); };
-  const bool has_wheels = has([](const recording::Channel& channel) { return channel.quantity.key.starts_with("wheel_"); });
-  const bool has_temperatures =
-      has([](const recording::Channel& channel) { return channel.quantity.kind == recording::QuantityKind::temperature; });
-  const std::string name = recording.file.string();
-  if (has_temperatures || !quality.drive.is_good()) {
-    add_fitness(document, name, "thermal models", quality.thermal);
-  }
-  if (has_wheels || !quality.thermal.is_good()) {
-    add_fitness(document, name, "wheel models", quality.drive);
-  }
-  document.tables.push_back(summary_table(recording.name, recording, report, quality));
-  document.tables.push_back(channel_table(quality));
-  for (const recording::Suspicion& suspicion : quality.suspicions) {
-    document.add_note(Severity::warning, fmt::format("{}: {}", recording.name, words_of(suspicion)));
-  }
-  for (const std::string& sentence : left_out_sentences(report)) {
-    document.add_note(Severity::note, fmt::format("{}: left out: {}", recording.name, sentence));
-  }
-  for (const recording::ReadingNote& note : report.notes) {
-    document.add_note(Severity::note, fmt::format("{}: {}", recording.name, words_of(note)));
-  }
 }
 
 }  // namespace heatsoak::present

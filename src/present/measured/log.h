@@ -1,4 +1,4 @@
-// Document of `log inspect`.
+// Documents of `log inspect` and `log convert`.
 #pragma once
 
 #include <span>
@@ -6,16 +6,15 @@
 #include <vector>
 
 #include "present/document.h"
+#include "recording/inspect_log.h"
 #include "recording/named_logs.h"
-#include "recording/quality.h"
-#include "recording/recording.h"
 #include "recording/recording_report.h"
 
 namespace heatsoak::present {
 
-/// Adds one log to the document. `recording`: the rows of Assessment::condensed(), or the whole log.
-void add_log(Document& document, const recording::Recording& recording, const recording::RecordingReport& report,
-             const recording::DataQuality& quality);
+Document logs_document(std::span<const recording::InspectedLog> logs);
+/// `out` is the name of the canonical file.
+Document conversion_document(const recording::ConvertedLog& log, const std::string& out);
 
 /// Returns the rejected samples, one sentence per channel and reason: "798 samples of winding_C: saturated; line 12-14, 20".
 std::vector<std::string> left_out_sentences(const recording::RecordingReport& report);

@@ -234,9 +234,6 @@ class LogChart {
 
 }  // namespace
 
-report::Chart log_chart(const recording::CondensedRecording& condensed, const recording::DataQuality& quality,
-                        const recording::RecordingReport& report) {
-  return LogChart(condensed, quality, report).draw();
-}
+report::Chart log_chart(const recording::InspectedLog& log) { return LogChart(log.condensed, log.quality, log.report).draw(); }
 
 }  // namespace heatsoak::present

@@ -53,7 +53,10 @@ Json clocks_json(const recording::DataQuality& quality) {
 
 }  // namespace
 
-Json log_json(const recording::Recording& recording, const recording::RecordingReport& report, const recording::DataQuality& quality) {
+Json log_json(const recording::InspectedLog& log) {
+  const recording::Recording& recording = log.condensed.rows();
+  const recording::RecordingReport& report = log.report;
+  const recording::DataQuality& quality = log.quality;
   Json gaps = Json::array();
   for (const recording::Gap& gap : quality.gaps) {
     gaps.push_back({{"line", gap.line}, {"begin_s", gap.begin_s}, {"duration_s", gap.duration_s}});
@@ -79,12 +82,9 @@ Json log_json(const recording::Recording& recording, const recording::RecordingR
           {"drive", {{"good", quality.drive.is_good()}, {"lacks", words_of(quality.drive.lacks)}}}};
 }
 
-Json logs_json(const std::vector<Json>& logs) { return {{"schema", "heatsoak.log/1"}, {"logs", logs}}; }
-
-Json conversion_json(const std::filesystem::path& file, const std::string& out, const recording::Recording& recording,
-                     const recording::RecordingReport& report) {
-  return {{"schema", "heatsoak.log_convert/1"},  {"file", file.string()},         {"out", out},
-          {"rows_in_file", report.rows_in_file}, {"rows_kept", report.rows_kept}, {"channels", recording.channels.size()}};
+Json conversion_json(const recording::ConvertedLog& log, const std::string& out) {
+  return {{"schema", "heatsoak.log_convert/1"},      {"file", log.file.string()},         {"out", out},
+          {"rows_in_file", log.report.rows_in_file}, {"rows_kept", log.report.rows_kept}, {"channels", log.channels}};
 }
 
 }  // namespace heatsoak::present

@@ -61,12 +61,26 @@ std::string fitted_motor(const motor::Motor& motor) { return motor.fit ? motor.f
 
 std::string signal_words(const calibration::PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
 
+std::string largest_error_words(const calibration::Prediction& prediction) {
+  const calibration::PredictedSignal* worst = nullptr;
+  const calibration::PredictedRun* worst_run = nullptr;
+  for (const calibration::PredictedRun& run : prediction.runs) {
+    for (const calibration::PredictedSignal& each : run.signals) {
+      if (worst == nullptr || each.rmse_K > worst->rmse_K) {
+        worst = &each;
+        worst_run = &run;
+      }
+    }
+  }
+  return worst == nullptr ? ""
+                          : fmt::format("the largest error is {} K rms, of the {} in {}", base::significant(worst->rmse_K, 2),
+                                        signal_words(*worst), worst_run->name);
+}
+
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                              std::span<const recording::LogReading> readings) {
   const calibration::Prediction& prediction = answer.prediction;
   Document document;
-  const calibration::PredictedSignal* worst = nullptr;
-  const calibration::PredictedRun* worst_run = nullptr;
   Table table{.columns = {{"run", "", 0, Alignment::left},
                           {"signal", "", 0, Alignment::left},
                           {"rms error", "K", 0},
@@ -83,17 +97,13 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
                             {is_scored ? base::significant(each.max_abs_K, 2) : "–"},
                             {is_scored ? fmt::format("{:.0f}", 100.0 * each.coverage_share) : "–"},
                             {fmt::format("{}", each.samples)}});
-      if (worst == nullptr || each.rmse_K > worst->rmse_K) {
-        worst = &each;
-        worst_run = &run;
-      }
     }
   }
-  if (worst != nullptr) {
-    document.headline.push_back({fmt::format(
-        "{} forecasts {} run{}; the largest error is {} K rms, of the {} in {}.",
-        motor.fit ? fmt::format("The model {} of {}", motor.file.filename().string(), motor.fit->motor) : motor.id, prediction.runs.size(),
-        prediction.runs.size() == 1 ? "" : "s", base::significant(worst->rmse_K, 2), signal_words(*worst), worst_run->name)});
+  if (const std::string largest = largest_error_words(prediction); !largest.empty()) {
+    document.headline.push_back(
+        {fmt::format("{} forecasts {} run{}; {}.",
+                     motor.fit ? fmt::format("The model {} of {}", motor.file.filename().string(), motor.fit->motor) : motor.id,
+                     prediction.runs.size(), prediction.runs.size() == 1 ? "" : "s", largest)});
   }
   document.paragraphs.emplace_back(
       "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");
@@ -101,6 +111,7 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
   for (const Note& each : prediction_notes(answer, readings)) {
     document.add_note(each.severity, each.words);
   }
+  document.data = prediction_json(motor, answer, readings);
   return document;
 }
 

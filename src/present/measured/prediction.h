@@ -17,6 +17,9 @@ std::string signal_words(const calibration::PredictedSignal& signal);
 /// Returns the id of the motor: a model names the motor that it was fitted from, not its own file.
 std::string fitted_motor(const motor::Motor& motor);
 
+/// Returns the largest error of the prediction: "the largest error is 1.2 K rms, of the winding in match_3"; empty without a signal.
+std::string largest_error_words(const calibration::Prediction& prediction);
+
 /// Returns the document. Warnings about the model's validity come first, and the reader's remarks of `readings` last.
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                              std::span<const recording::LogReading> readings);

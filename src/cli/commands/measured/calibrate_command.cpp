@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "calibration/calibration_job.h"
 #include "cli/command.h"
@@ -37,13 +36,11 @@ base::ExitCode run(const CalibrateOptions& options, Session& session) {
   const calibration::CalibrationAnswer answer =
       with_progress([&](const base::JobProgress& progress) { return calibration::run_calibration(job, progress); });
   session.write(options.out, motor::to_toml(answer.motor));
-  present::Document document = present::calibration_document(job.motor, answer, job.logs.readings);
-  document.add_file(options.out);
+  present::Document document = present::calibration_document(job.motor, answer, job.logs.readings, options.out);
   if (session.draws(options.plot)) {
     session.draw(document, options.plot, present::calibration_chart(job.motor, answer.calibration));
   }
   session.show(document);
-  session.answer(present::calibration_json(job.motor, answer, job.logs.readings, options.out));
   return base::ExitCode::done;
 }
 

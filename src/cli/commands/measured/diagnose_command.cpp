@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
-#include "cli/measured/effect_topics.h"
 #include "cli/measured/logs_option.h"
 #include "cli/terminal.h"
 #include "diagnosis/diagnosis_job.h"
@@ -30,7 +28,7 @@ struct DiagnoseOptions {
 };
 
 void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnswer& answer,
-                  const std::vector<recording::LogReading>& readings, Session& session) {
+                  const std::vector<recording::LogReading>& readings, present::Document& document, Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
@@ -41,8 +39,10 @@ void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnsw
   motor::Motor motor = answer.motor;
   std::ranges::move(present::notes_of_model_file(answer.diagnosis), std::back_inserter(motor.notes));
   session.write(folder / (motor.id + ".toml"), motor::to_toml(motor));
-  session.write(folder / "diagnosis.json", present::diagnosis_json(answer, readings).dump(2) + "\n");
+  session.write(folder / "diagnosis.json", present::json_text(document.data));
   session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
+  document.add_file(options.out + "/diagnosis.html");
+  document.add_file(fmt::format("{}/{}.toml", options.out, motor.id));
 }
 
 base::ExitCode run(const DiagnoseOptions& options, Session& session) {
@@ -56,12 +56,9 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   const std::vector<recording::LogReading>& readings = job.logs.readings;
   present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {
-    write_folder(options, answer, readings, session);
-    document.add_file(options.out + "/diagnosis.html");
-    document.add_file(fmt::format("{}/{}.toml", options.out, answer.motor.id));
+    write_folder(options, answer, readings, document, session);
   }
   session.show(document);
-  session.answer(present::diagnosis_json(answer, readings));
   return answer.diagnosis.verdict == diagnosis::DiagnosisVerdict::not_identifiable ? base::ExitCode::cannot_answer : base::ExitCode::done;
 }
 
@@ -91,7 +88,6 @@ Command diagnose_command() {
         session.add_answer_options(app);
         return [options, &session] { return present::with_words([&] { return run(*options, session); }); };
       },
-      .topics = effect_topics,
   };
 }
 

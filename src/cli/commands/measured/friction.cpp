@@ -4,7 +4,7 @@
 
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/quantity_option.h"
@@ -12,8 +12,6 @@
 #include "friction/friction_job.h"
 #include "present/measured/failure_words.h"
 #include "present/measured/friction_chart.h"
-#include "present/measured/friction_words.h"
-#include "present/robot_notes.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -32,30 +30,16 @@ struct FrictionOptions {
   std::string plot;
 };
 
-struct Input {
-  friction::FrictionJob job;
-  std::string motor_id;
-};
-
-/// Finds the motor. The robot's own motor may be missing from the data base: fits from modulation do not need it, and
-/// present::friction_remarks() reports it.
-void find_motor(const FrictionOptions& options, const input::DataFolders& folders, Input& input) {
-  input.motor_id = options.motor.empty() ? input.job.robot.drive.motor : options.motor;
-  try {
-    input.job.motor = duty::motor_named(folders, input.motor_id).nominal;
-  } catch (const base::Failure&) {
-    if (!options.motor.empty()) {
-      throw;
-    }
+friction::FrictionJob job_of(const FrictionOptions& options, const input::DataFolders& folders) {
+  friction::FrictionJob job{
+      .robot = duty::robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map};
+  job.motor_id = options.motor.empty() ? job.robot.drive.motor : options.motor;
+  const std::optional<motor::Motor> motor =
+      options.motor.empty() ? duty::own_motor(folders, job.robot) : duty::motor_named(folders, options.motor);
+  if (motor) {
+    job.motor = motor->nominal;
   }
-}
-
-Input input_of(const FrictionOptions& options, const Session& session) {
-  const input::DataFolders folders = session.folders();
-  Input input{.job = {.robot = duty::robot_named(folders, options.robot), .logs = options.logs, .folders = folders, .map = options.map},
-              .motor_id = {}};
-  find_motor(options, folders, input);
-  friction::FrictionJob& job = input.job;
+  job.method = options.method == "roll_out" ? friction::FrictionMethod::roll_out : friction::FrictionMethod::steady_state;
   job.direction = options.direction == "commanded"  ? friction::TravelDirection::commanded
                   : options.direction == "measured" ? friction::TravelDirection::measured
                   : options.direction == "wheels"   ? friction::TravelDirection::wheels
@@ -64,66 +48,14 @@ Input input_of(const FrictionOptions& options, const Session& session) {
   job.is_lifted = options.is_lifted;
   job.takes_logs_as_they_are = options.takes_logs_as_they_are;
   job.writes_robot_file = !options.out.empty();
-  return input;
+  return job;
 }
 
-void draw(const FrictionOptions& options, const robot::Robot& robot, const friction::SteadyFriction& found, present::Document& document,
-          Session& session) {
-  const friction::FrictionFit& fit = found.fit;
-  const std::string of_headings = fmt::format("{} legs on {} headings", found.steady.parts.size(), fit.headings);
-  report::Chart chart = present::friction_chart(fit, robot.name, of_headings);
-  std::string second = options.plot;
-  if (!chart.panels.empty()) {
-    session.draw(document, options.plot, std::move(chart));
-    const std::filesystem::path first = options.plot;
-    second = first.empty()
-                 ? ""
-                 : std::filesystem::path(first).replace_filename(first.stem().string() + "_voltage" + first.extension().string()).string();
-  }
-  session.draw(document, second, present::voltage_chart(found.steady, fit, robot::make_kinematics(robot), robot.name, found.settings));
-}
-
-void write_robot_file(const FrictionOptions& options, const friction::FrictionRun& run, present::Document& document, Session& session) {
-  if (!options.out.empty()) {
-    session.write(options.out, run.robot_text);
-    for (const friction::WrittenAsZero& each : run.notes) {
-      document.add_note(present::Severity::note, present::words_of(each));
-    }
-    document.add_file(options.out);
-  }
-}
-
-base::ExitCode steady_state(const FrictionOptions& options, const Input& input, Session& session) {
-  const robot::Robot& robot = input.job.robot;
-  const friction::SteadyFriction found =
-      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::steady_friction(input.job, progress); });
-  const present::FrictionRemarks remarks =
-      present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, present::lack_of_fit_words(found.fit));
-  const present::FrictionAnswer answer{found.steady,        found.fit,          found.error, found.settings.use_return_legs,
-                                       found.expected_from, options.logs.size()};
-  present::Document document = present::friction_document(robot, answer);
-  present::add_findings(document, remarks.findings, remarks.suspicions);
-  present::add_robot_notes(document, robot);
-  write_robot_file(options, found, document, session);
-  if (session.draws(options.plot)) {
-    draw(options, robot, found, document, session);
-  }
-  session.show(document);
-  session.answer(present::friction_json(robot, answer, remarks));
-  return base::ExitCode::done;
-}
-
-base::ExitCode by_roll_out(const FrictionOptions& options, const Input& input, Session& session) {
-  const friction::RollOutFriction found =
-      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::roll_out_friction(input.job, progress); });
-  const present::FrictionRemarks remarks = present::friction_remarks(input.motor_id, input.job.motor.has_value(), found, {});
-  present::Document document = present::roll_out_document(input.job.robot, found.result, found.drive, options.logs.size());
-  present::add_findings(document, remarks.findings, remarks.suspicions);
-  present::add_robot_notes(document, input.job.robot);
-  write_robot_file(options, found, document, session);
-  session.show(document);
-  session.answer(present::roll_out_json(input.job.robot, found.result, found.drive, remarks));
-  return base::ExitCode::done;
+/// Returns the name of the second picture: "x_voltage.svg" beside "x.svg"; empty without a first one.
+std::string second_picture(const std::filesystem::path& first) {
+  return first.empty()
+             ? ""
+             : std::filesystem::path(first).replace_filename(first.stem().string() + "_voltage" + first.extension().string()).string();
 }
 
 base::ExitCode run(const FrictionOptions& options, Session& session) {
@@ -133,8 +65,23 @@ base::ExitCode run(const FrictionOptions& options, Session& session) {
   if (options.method != "roll_out" && options.is_lifted) {
     throw base::Failure(base::ExitCode::bad_input, "--lifted applies to roll-outs only; expected --method roll_out with it");
   }
-  const Input input = input_of(options, session);
-  return options.method == "steady_state" ? steady_state(options, input, session) : by_roll_out(options, input, session);
+  const friction::FrictionJob job = job_of(options, session.folders());
+  const friction::FrictionAnswer answer =
+      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::run_friction(job, progress); });
+  present::Document document = present::friction_document(job, answer);
+  if (!options.out.empty()) {
+    session.write(options.out, friction::robot_text(answer));
+    document.add_file(options.out);
+  }
+  if (session.draws(options.plot)) {
+    std::string file = options.plot;
+    for (report::Chart& chart : present::friction_charts(job, answer)) {
+      session.draw(document, file, std::move(chart));
+      file = second_picture(options.plot);
+    }
+  }
+  session.show(document);
+  return base::ExitCode::done;
 }
 
 }  // namespace

@@ -1,18 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/quantity_option.h"
 #include "present/measured/log.h"
 #include "present/measured/log_chart.h"
-#include "present/measured/log_json.h"
-#include "recording/quality.h"
-#include "recording/read_recording.h"
-#include "recording/recording_stream.h"
-#include "recording/write_recording.h"
+#include "recording/inspect_log.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -40,44 +36,21 @@ void check(const LogOptions& options) {
 }
 
 base::ExitCode inspect(const LogOptions& options, Session& session) {
-  base::ExitCode code = base::ExitCode::done;
-  present::Document document;
-  std::vector<present::Json> logs;
-  for (const std::string& name : options.files) {
-    const std::filesystem::path file = input::log_named(session.folders(), name);
-    recording::RecordingReport report;
-    const recording::Mapping mapping = recording::mapping_for(file, options.map);
-    recording::RecordingStream stream(file, mapping, report);
-    recording::Assessment assessment;
-    for (recording::Recording part; stream.next(part);) {
-      assessment.add(part);
-    }
-    const recording::DataQuality quality = assessment.conclude(report);
-    const recording::Recording& recording = assessment.condensed().rows();
-    present::add_log(document, recording, report, quality);
-    logs.push_back(present::log_json(recording, report, quality));
-    if (!quality.thermal.is_good() && !quality.drive.is_good()) {
-      code = base::ExitCode::cannot_answer;
-    }
-    if (session.draws(options.plot)) {
-      session.draw(document, options.plot, present::log_chart(assessment.condensed(), quality, report));
+  const std::vector<recording::InspectedLog> logs = recording::inspect_logs(session.folders(), options.files, options.map);
+  present::Document document = present::logs_document(logs);
+  if (session.draws(options.plot)) {
+    for (const recording::InspectedLog& log : logs) {
+      session.draw(document, options.plot, present::log_chart(log));
     }
   }
   session.show(document);
-  session.answer(present::logs_json(logs));
-  return code;
+  return std::ranges::all_of(logs, &recording::InspectedLog::is_good) ? base::ExitCode::done : base::ExitCode::cannot_answer;
 }
 
 base::ExitCode convert(const LogOptions& options, Session& session) {
-  const std::filesystem::path file = input::log_named(session.folders(), options.files.front());
-  recording::RecordingReport report;
-  const recording::Recording recording = recording::read_recording(file, recording::mapping_for(file, options.map), report);
-  session.write(options.out, recording::to_canonical_csv(recording));
-  present::Document document = present::short_answer(
-      fmt::format("{} of {} rows and {} channels converted.", report.rows_kept, report.rows_in_file, recording.channels.size()));
-  document.add_file(options.out);
-  session.show(document);
-  session.answer(present::conversion_json(file, options.out, recording, report));
+  recording::ConvertedLog log = recording::convert_log(session.folders(), options.files.front(), options.map);
+  session.write(options.out, std::move(log.text));
+  session.show(present::conversion_document(log, options.out));
   return base::ExitCode::done;
 }
 

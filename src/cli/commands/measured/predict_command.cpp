@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "calibration/prediction_job.h"
 #include "cli/command.h"
@@ -30,7 +29,6 @@ base::ExitCode run(const PredictOptions& options, Session& session) {
     session.draw(document, options.plot, present::prediction_chart(job.motor, answer.prediction));
   }
   session.show(document);
-  session.answer(present::prediction_json(job.motor, answer, job.logs.readings));
   return base::ExitCode::done;
 }
 

@@ -1,0 +1,94 @@
+// What `list` lists and `describe` describes.
+#include "present/topics.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/diagnostic.h"
+#include "present/list.h"
+#include "present/renderer.h"
+#include "report/chart.h"
+#include "support/source_folder.h"
+
+namespace heatsoak::present {
+namespace {
+
+using testing::HasSubstr;
+
+const input::DataFolders kFolders{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
+
+std::set<std::string> ids_of(const Document& list) {
+  std::set<std::string> ids;
+  for (const Json& item : list.data.at("items")) {
+    ids.insert(item.at("id").get<std::string>());
+  }
+  return ids;
+}
+
+TEST(Topics, EachIsDescribedWithItsData) {
+  for (const Topic& topic : all_topics(kFolders)) {
+    const Document document = description_of(topic.id, kFolders);
+    EXPECT_FALSE(topic.summary().empty()) << topic.id;
+    EXPECT_FALSE(document.headline.empty()) << topic.id;
+    EXPECT_EQ(document.data.at("schema"), "heatsoak.describe/1") << topic.id;
+    EXPECT_EQ(document.data.at("id"), topic.id);
+  }
+}
+
+/// describe takes the first topic of a name, so a second one could not be described.
+TEST(Topics, IdsAreUnique) {
+  std::set<std::string> seen;
+  for (const Topic& topic : all_topics(kFolders)) {
+    EXPECT_TRUE(seen.insert(topic.id).second) << topic.id;
+  }
+}
+
+TEST(Topics, AMisspeltNameIsAnsweredWithASimilarOne) {
+  try {
+    static_cast<void>(description_of("windagee", kFolders));
+    FAIL();
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+    EXPECT_THAT(failure.what(), HasSubstr("did you mean 'windage'"));
+  }
+}
+
+TEST(List, EachKindHasItsRowsInTableAndData) {
+  const std::set<std::string> topics = ids_of(list_document("topics", kFolders));
+  for (const std::string& kind : listed_kinds()) {
+    const Document document = list_document(kind, kFolders);
+    EXPECT_EQ(document.data.at("kind"), kind);
+    ASSERT_EQ(document.tables.size(), 1U);
+    EXPECT_FALSE(document.tables.front().rows.empty()) << kind;
+    EXPECT_EQ(document.tables.front().rows.size(), document.data.at("items").size()) << kind;
+    if (kind != "formats") {
+      for (const std::string& id : ids_of(document)) {
+        EXPECT_TRUE(topics.contains(id)) << id;
+      }
+    }
+  }
+}
+
+TEST(List, FormatsAreThoseOfTheProgram) {
+  const std::set<std::string> formats = ids_of(list_document("formats", kFolders));
+  for (const Renderer& renderer : all_renderers()) {
+    EXPECT_TRUE(formats.contains(std::string(renderer.name)));
+  }
+  for (const std::string_view ending : report::kPictureEndings) {
+    EXPECT_TRUE(formats.contains(std::string(ending.substr(1))));
+  }
+}
+
+TEST(List, AFolderWithoutFilesIsAnError) {
+  input::DataFolders some = kFolders;
+  some.robots = kSource / "src";  // it has no .toml file
+  EXPECT_NO_THROW(static_cast<void>(list_document("motors", some)));
+  EXPECT_THROW(static_cast<void>(list_document("robots", some)), base::Failure);
+  EXPECT_THROW(static_cast<void>(list_document("topics", some)), base::Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak::present
