@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/quantity.h"
+
 namespace heatsoak::present {
 namespace {
 
@@ -51,6 +53,20 @@ std::string title_of(const calibration::Calibration& calibration, const calibrat
   return title;
 }
 
+/// States how many values the runs determine, and the largest error that remains, on hold-out runs if there are any.
+std::string verdict_of(const motor::Motor& motor, const calibration::Calibration& calibration) {
+  const auto identifiable = std::ranges::count_if(calibration.parameters, &calibration::CalibratedParameter::is_identifiable);
+  std::string verdict = fmt::format("{}: {} of {} values identifiable", motor.name, identifiable, calibration.parameters.size());
+  const bool is_held_out = !calibration.holdout_error.empty();
+  const std::vector<calibration::ErrorBeforeAfter>& errors = is_held_out ? calibration.holdout_error : calibration.fit_error;
+  if (!errors.empty()) {
+    const double largest_K =
+        std::ranges::max(errors, {}, [](const calibration::ErrorBeforeAfter& each) { return each.after.rmse_K; }).after.rmse_K;
+    verdict += fmt::format(", largest {} {} K rms", is_held_out ? "hold-out error" : "error", base::significant(largest_K, 2));
+  }
+  return verdict;
+}
+
 }  // namespace
 
 report::Chart calibration_chart(const motor::Motor& motor, const calibration::Calibration& calibration) {
@@ -78,10 +94,9 @@ report::Chart calibration_chart(const motor::Motor& motor, const calibration::Ca
   };
   append_all(calibration.fitted_before, calibration.fitted_after, fitted);
   append_all(calibration.holdout_before, calibration.holdout_after, predicted);
-  report::Chart chart{
-      .title = fmt::format("{}: calibration", motor.name), .subtitle = {}, .x_label = "time, runs one after the other / min"};
+  report::Chart chart{.title = verdict_of(motor, calibration), .subtitle = {}, .x_label = "time, runs one after the other / min"};
   chart.subtitle =
-      fmt::format("{} fitted{}; the model runs free from the start of each",
+      fmt::format("Calibration: {} fitted{}; the model runs free from the start of each",
                   calibration.runs.size() == 1 ? "1 run" : fmt::format("{} runs", calibration.runs.size()),
                   calibration.holdout_after.empty() ? "" : fmt::format(", then {} held out", calibration.holdout_after.size()));
   for (Traces& each : traces) {

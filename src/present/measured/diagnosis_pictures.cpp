@@ -8,6 +8,7 @@
 #include "attribution/scan_term.h"
 #include "estimation/interval.h"
 #include "present/measured/diagnosis_output.h"
+#include "present/measured/diagnosis_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -72,10 +73,11 @@ void add_residuals(const std::string& signal, const Compared& models, const std:
 
 DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosis::DiagnosisInput& input,
                            const diagnosis::HoldoutScore& score) {
-  report::Chart chart{"Residual in K before and after",
-                      "runs one behind the other; the model runs freely from the first measured temperatures",
-                      "time / min",
-                      {}};
+  report::Chart chart{
+      fmt::format("Residual in K: {}", verdict_words(diagnosis)),
+      "before and after the diagnosis, runs one behind the other; the model runs freely from the first measured temperatures",
+      "time / min",
+      {}};
   const Compared models{input.model, diagnosis.selection.after.model};
   for (const auto& [signal, error] : diagnosis.before_train) {
     report::ChartPanel panel{signal.substr(0, signal.rfind('_')), "measured − model / K", {}, {}, {}};
@@ -89,10 +91,12 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
 }
 
 DiagnosisPicture unknown_heat(const diagnosis::Diagnosis& diagnosis) {
-  report::Chart chart{"Unknown heat in W before and after",
-                      "unknown heat flux into the node that explains the measured temperatures; band: 95 % after, given the model",
-                      "time / min",
-                      {}};
+  report::Chart chart{
+      fmt::format("Unknown heat in W: {}", verdict_words(diagnosis)),
+      "heat flux into the node that explains the measured temperatures, before and after the diagnosis; band: 95 % after, given "
+      "the model",
+      "time / min",
+      {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
     report::ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
     report::ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
@@ -136,7 +140,7 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswe
       continue;
     }
     report::Chart chart{
-        fmt::format("Curve found at the {}", heat.node),
+        fmt::format("Curve found at the {}: {}", heat.node, verdict_words(diagnosis)),
         fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
         heat.signals.front() + (heat.signal_unit.empty() ? "" : " / " + heat.signal_unit),
         {}};

@@ -9,8 +9,9 @@ namespace heatsoak::present {
 
 report::Chart prediction_chart(const motor::Motor& motor, const calibration::Prediction& prediction) {
   report::Chart chart{
-      .title = fmt::format("{}: prediction", fitted_motor(motor)),
-      .subtitle = "from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
+      .title = fmt::format("{}: {}", fitted_motor(motor), largest_error_words(prediction)),
+      .subtitle =
+          "Prediction from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
       .x_label = "time / min"};
   for (const calibration::PredictedRun& run : prediction.runs) {
     std::vector<double> time_min;

@@ -1,0 +1,73 @@
+// The title of a picture states the verdict or the main result.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "present/measured/calibration_chart.h"
+#include "present/measured/diagnosis_output.h"
+#include "present/measured/diagnosis_words.h"
+#include "present/measured/prediction_chart.h"
+
+namespace heatsoak::present {
+namespace {
+
+using testing::EndsWith;
+using testing::StartsWith;
+
+TEST(Titles, ACalibrationStatesItsIdentifiableValuesAndItsLargestError) {
+  motor::Motor motor;
+  motor.name = "M";
+  calibration::Calibration calibration;
+  calibration.parameters.resize(3);
+  calibration.parameters[1].is_identifiable = true;
+  const auto error_of = [](const char* signal, double rmse_K) {
+    calibration::ErrorBeforeAfter error;
+    error.signal = signal;
+    error.after.rmse_K = rmse_K;
+    return error;
+  };
+  calibration.fit_error = {error_of("winding_C", 0.4), error_of("stator_C", 1.26)};
+  EXPECT_EQ(calibration_chart(motor, calibration).title, "M: 1 of 3 values identifiable, largest error 1.3 K rms");
+  calibration.holdout_error = {error_of("winding_C", 2.0)};
+  EXPECT_THAT(calibration_chart(motor, calibration).title, EndsWith("largest hold-out error 2 K rms"));
+}
+
+TEST(Titles, APredictionStatesItsLargestError) {
+  motor::Motor motor;
+  motor.id = "m";
+  calibration::Prediction prediction;
+  for (const auto& [name, error_K] : {std::pair("a", 0.5), {"b", 3.0}}) {
+    calibration::PredictedRun run;
+    run.name = name;
+    run.time_s = {0.0};
+    calibration::PredictedSignal signal;
+    signal.signal = "winding_C";
+    signal.rmse_K = error_K;
+    run.signals = {signal};
+    prediction.runs.push_back(run);
+  }
+  EXPECT_EQ(prediction_chart(motor, prediction).title, "m: the largest error is 3 K rms, of the winding in b");
+}
+
+TEST(Titles, ADiagnosisStatesItsVerdict) {
+  diagnosis::DiagnosisAnswer answer;
+  diagnosis::FoundEffect effect;
+  effect.id = "windage";
+  effect.is_from_catalogue = true;
+  answer.diagnosis.effects = {effect};
+  answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::effect_found;
+  const std::vector<DiagnosisPicture> pictures = diagnosis_pictures(answer);
+  ASSERT_EQ(pictures.size(), 2U);
+  EXPECT_EQ(pictures[0].chart.title, "Residual in K: the model lacks windage");
+  EXPECT_EQ(pictures[1].chart.title, "Unknown heat in W: the model lacks windage");
+  answer.diagnosis.effects[0].confusable_with = {"iron_loss_eddy"};
+  EXPECT_EQ(verdict_words(answer.diagnosis), "the model lacks windage or iron_loss_eddy, which these runs do not distinguish");
+  answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::unexplained;
+  EXPECT_THAT(verdict_words(answer.diagnosis), EndsWith(", and further heat that no effect of the catalogue explains"));
+  answer.diagnosis.effects.clear();
+  EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("heat is missing that no effect"));
+  answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::nothing_missing;
+  EXPECT_EQ(verdict_words(answer.diagnosis), "no effect is missing");
+}
+
+}  // namespace
+}  // namespace heatsoak::present
