@@ -55,7 +55,7 @@ struct MotorModel {
 };
 
 /// Returns the options for reading logs of the motor; the caller sets `needed` and `ambient_C`. Rows are merged up to a tenth of the
-/// winding's time constant (0.05 to 2 s), because a network of two bodies does not describe faster changes of a real winding. A missing
+/// winding's time constant (0.05 to 2 s): a network of two bodies does not describe faster changes of a real winding. A missing
 /// torque follows from torque constant and no-load current, except if the input power is the heat, which contains the copper loss. A
 /// logged current is read only if it is the heat input. Sensors have the faults stated in the file.
 estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
@@ -76,9 +76,11 @@ struct HeatRules {
   bool may_add_remaining_loss = false;
 };
 
-/// Returns the wanted heat input if all recordings have it, else the first that all have: the power balance (current, input power, torque
-/// and speed) if the motor has or gets a remaining_loss, current, input power, torque, or a current of some logs and a torque of the
-/// others. Throws Failure (bad_input) if they have none of these.
+/// Returns the wanted heat input if all recordings have it, else the first of these that all have:
+/// - the power balance (current, input power, torque and speed), if the motor has or gets a remaining_loss;
+/// - current; input power; torque;
+/// - a current in some recordings and a torque in the others.
+/// Throws Failure (bad_input) if they have none of these.
 HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Recording> recordings, const HeatRules& rules = {});
 
 /// Returns a finding if `used` is not the wanted heat input, with the recordings that lack the wanted one.

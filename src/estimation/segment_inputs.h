@@ -18,9 +18,9 @@ class SegmentInputs {
   /// Called for every row at which an interval may end.
   using Ends = std::function<void(std::size_t row)>;
   /// Adds the inputs from `row` to `next`, the next row with known inputs. The inputs of `row` hold until the row after it, or for one
-  /// usual step if rows are missing there (for logs of the previous interval, at the end of that step). The rest is unknown: it gets the
-  /// values before and after the gap in equal parts, replaced by single cells that were logged, and an uncertainty. Rows that lack only the
-  /// speed are not merged into the gap.
+  /// usual step if rows are missing there. If the rows of the log describe the interval before them, that step ends at `next`. The rest
+  /// is unknown: it gets the values before and after the gap in equal parts, replaced by single cells that were logged, and an uncertainty.
+  /// Rows that lack only the speed are not merged into the gap.
   void add(std::size_t row, std::size_t next, MeanInputs& mean, const Ends& ends);
 
  private:

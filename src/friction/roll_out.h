@@ -14,8 +14,8 @@ namespace heatsoak::friction {
 // With open motor terminals, a friction torque τ and a damping D act on each wheel. They reduce the kinetic energy of body, wheels and
 // rotors:
 //   E(t) = E_0 − τ·Σ∫|ω_i| dt − D·Σ∫ω_i² dt.
-// This is linear in τ and D, needs no derivative, and holds even if the robot turns while it rolls (the dry friction of all wheels need not
-// point against the travel). If the robot is lifted, every wheel rolls out by itself. Losses of the rollers count as τ. A segment begins
+// This is linear in τ and D and needs no derivative. It also holds while the robot turns, when the dry friction of some wheels does not
+// point against the travel. If the robot is lifted, every wheel rolls out by itself. Losses of the rollers count as τ. A segment begins
 // when all drivers are off (in a log without voltages, at the largest speed) and ends at 15 % of its first speed.
 
 enum class RollOut { translation, rotation, lifted_wheel };

@@ -11,8 +11,8 @@ namespace heatsoak::friction {
 
 // Method. Rows are condensed into medians of five to nine rows, which are insensitive to one or two bad rows. Standstill and changes of
 // direction divide the log into legs. Within a leg, the cumulative sum of each signal about its mean detects changes of the mean (Page
-// 1954). The leg is divided at its largest value if that exceeds the effect of noise, 1.95·σ·√n (Brownian bridge, 0.1 %), and if the means
-// on both sides differ by more than 0.5 %. Both sides are then tested again. Undivided segments of at least five medians are steady. Of
+// 1954). The leg is divided at its largest value on two conditions: it exceeds the effect of noise, 1.95·σ·√n (Brownian bridge, 0.1 %), and
+// the means on both sides differ by more than 0.5 %. Both sides are then tested again. Undivided segments of at least five medians are steady. Of
 // several such segments at one speed, only the longest counts, because the others settle towards it. σ is estimated from second
 // differences, so that a slow change does not count as noise. A wheel that should stand does not divide a leg.
 

@@ -43,8 +43,8 @@ using ChooseCsvColumns = std::function<CsvColumns(std::span<const std::string> h
 /// Reads a file with one header row and passes every row to `row`. Lines before the header that begin with "#" are comments. `required`
 /// columns must be in the header; `optional` ones give NaN if they are not. A UTF-8 byte order mark and CR LF are accepted. Memory does not
 /// grow with the file.
-/// Throws Failure (bad_input) for missing columns (with "did you mean"), a cell that is not a finite number, a row with a different number
-/// of cells, and a file without rows. It lists at most 20 problems and counts the others. Valid rows are passed even if other rows are
+/// Throws Failure (bad_input) for missing columns (with "did you mean") and for a file without rows. The same for a cell that is not a
+/// finite number and a row with a different number of cells. It lists at most 20 problems and counts the others. Valid rows are passed even if other rows are
 /// invalid, but none if the header is.
 void read_csv(const std::filesystem::path& path, std::span<const std::string> required, std::span<const std::string> optional,
               const std::function<void(const CsvRow&)>& row);

@@ -11,8 +11,8 @@
 
 namespace heatsoak::recording {
 
-/// Replaces invalid samples by NaN and reports their lines. Heat inputs and other signals may jump and rest, so they are kept, except for
-/// single currents and speeds that no motor reaches and that are far from their neighbours (outliers).
+/// Replaces invalid samples by NaN and reports their lines. Heat inputs and other signals may jump and rest, so they are kept. Exceptions
+/// are single currents and speeds that no motor reaches and that are far from their neighbours (outliers).
 /// - frozen: exactly one value for longer than the channel's noise allows; or one value until an isolated jump, or to the end of the run
 ///   after a slope. A constant reading of a constant temperature is valid.
 /// - saturated: a climb that stops abruptly at the largest or smallest value, or noise that is cut off there.

@@ -24,8 +24,8 @@ inline constexpr std::size_t kLeastPieces = 3;
 inline constexpr std::size_t kLeastToCompare = 2;
 
 /// Returns the weight of the left-out error in the expected error of a fit to all of `count` runs; the other part is the error of that fit
-/// in its own runs. The error due to the parameters falls as 1/n with n runs, and lowers the error of the fitted runs as much as it raises
-/// the error of other runs (Akaike 1970). A left-out run is predicted from n − 1 runs, so its error alone would favour stiff models.
+/// in its own runs. The error due to the parameters falls as 1/n with n runs. It lowers the error of the fitted runs as much as it raises
+/// that of other runs (Akaike 1970). A left-out run is predicted from n − 1 runs, so its error alone would favour stiff models.
 constexpr double left_out_weight(std::size_t count) {
   const auto n = static_cast<double>(count);
   return 2.0 * (n - 1.0) / (2.0 * n - 1.0);

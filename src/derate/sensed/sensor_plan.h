@@ -9,8 +9,8 @@ namespace heatsoak::derate {
 
 /// Computes the parameters of the sensor. `model_only` is the guard of the same motor without a sensor.
 /// 1. Gain: sensor_gain().
-/// 2. Safety factor: the smallest one, below that without a sensor, at which on independently drawn motors the lower bound of the share
-///    that keeps every limit in every use (kCertainty_share) reaches the confidence. Each motor has a drawn sensor error.
+/// 2. Safety factor: the smallest one, below that without a sensor, at which enough independently drawn motors keep every limit in every
+///    use. Enough: the lower bound of their share (kCertainty_share) reaches the confidence. Each motor has a drawn sensor error.
 /// 3. Cross-check: bounds that at most 1 % of the correct sensors on drawn motors violate.
 /// 4. most_gain_A: the largest current above the guard without a sensor at which the nominal motor keeps its limits although the sensor
 ///    always reads the air temperature.
