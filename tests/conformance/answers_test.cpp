@@ -86,6 +86,15 @@ TEST(Json, goes_to_stdout_alone_or_to_its_file) {
   EXPECT_THAT(folder.names(), UnorderedElementsAre("answer.json"));
 }
 
+TEST(Json, is_also_a_report) {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path() / "report.json").string();
+  const std::string file = (folder.path() / "answer.json").string();
+  EXPECT_EQ(run(kShortSteady + Words{"--report", report, "--json", file}).exit_code, 0);
+  EXPECT_EQ(content_of(report), content_of(file));
+  EXPECT_EQ(content_of(report), run(kShortSteady + Words{"--json", "-"}).out);
+}
+
 TEST(Json, reports_errors_of_usage_too) {
   const TemporaryFolder folder;
   RunOptions inside;
