@@ -30,8 +30,8 @@ class Session {
   [[nodiscard]] input::DataFolders folders() const;
   // All output is kept until the command has finished: finish() writes all of it, or nothing if a file cannot be written.
 
-  /// Adds text for other programs, such as a script: to stdout, or to stderr if the JSON goes to stdout. Control characters are replaced by
-  /// '?'. Answers for people are documents: see show().
+  /// Adds text for other programs, such as a script: to stdout, or to stderr if the JSON or a report goes to stdout. Control characters are
+  /// replaced by '?'. Answers for people are documents: see show().
   void say(std::string_view text);
   /// Adds the answer: in the width of the terminal, with the notes selected by --explain and --quiet, and as files for --report and --json.
   void show(const present::Document& document);
@@ -74,6 +74,7 @@ class Session {
   bool explains_ = false;
   bool is_quiet_ = false;
   std::string text_;       ///< contains no control characters except colours
+  std::string beside_;     ///< text of say() beside a report on stdout: for stderr
   std::string json_text_;  ///< for stdout
   std::vector<std::filesystem::path> folders_;
   std::vector<base::OutputFile> files_;

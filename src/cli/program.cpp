@@ -264,7 +264,7 @@ void Session::add_answer_options(CLI::App& app) {
       ->check(names_a_file);
 }
 
-void Session::say(std::string_view text) { text_ += printable(text); }
+void Session::say(std::string_view text) { (report_ == "-" ? beside_ : text_) += printable(text); }
 
 void Session::show(const present::Document& document) {
   add_json(document);
@@ -336,11 +336,13 @@ void Session::finish() {
     throw;
   }
   put(json_target_ == "-" ? stderr : stdout, text_);
+  put(stderr, beside_);
   put(stdout, json_text_);
 }
 
 void Session::answer_failure(const base::Failure& failure) {
   text_.clear();
+  beside_.clear();
   json_text_.clear();
   folders_.clear();
   files_.clear();
@@ -350,7 +352,11 @@ void Session::answer_failure(const base::Failure& failure) {
   for (const auto& [path, text] : std::exchange(after_failure_, {})) {
     files_.push_back({path, text(failure)});
   }
-  add_json({.data = present::failure_json(failure)});
+  const present::Document error{.data = present::failure_json(failure)};
+  add_json(error);
+  if (report_.ends_with(".json")) {
+    write(report_, present::rendered_for(report_, error));
+  }
   try {
     finish();
   } catch (const base::Failure& unwritable) {

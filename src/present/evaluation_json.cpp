@@ -32,8 +32,14 @@ Json json(const std::vector<select::RestOfHotMotor>& rests) {
               {"rest_all_s", rounded(each.all_s, 0)},
               {"starts", each.starts},
               {"starts_never", each.starts_never},
-              {"over_without_current", each.over_without_current}};
-    add_never(rest, {"rest_half_s", "rest_all_s"});
+              {"over_without_current", each.over_without_current},
+              {"longest_rest_s", select::kLongestRest_s}};
+    // A longer rest than the longest one may suffice, unless the motor is over its limits without current.
+    if (each.over_without_current) {
+      add_never(rest, {"rest_half_s", "rest_all_s"});
+    } else {
+      add_never(rest, {});
+    }
     all.push_back(std::move(rest));
   }
   return all;

@@ -89,6 +89,15 @@ TEST_F(CheckCommand, ExceededLimitIsExitOneAtItsLine) {
   EXPECT_EQ(check(check_with(120.0, 99.0)).exit_code, 1);
 }
 
+// GitHub reads annotations from both streams, but a document on stdout must contain nothing else.
+TEST_F(CheckCommand, AnnotationsStayOutOfAReportOnStdout) {
+  options_.environment = {"GITHUB_ACTIONS=true", "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"};
+  const ProgramRun done = check(check_with(30.0, 1.0), {"--report", "-"});
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("1 limit of 2 does not hold"), Not(HasSubstr("::error"))));
+  EXPECT_THAT(done.err, HasSubstr("::error file=robot.check.toml,line=9,col=20,title=paper%3A winding_peak_p95::"));
+}
+
 TEST_F(CheckCommand, UnknownMotorIsExitOneAndTheOtherLimitsAreEvaluated) {
   options_.environment = {"GITHUB_ACTIONS=true", "GITHUB_STEP_SUMMARY=summary.md", "GITHUB_WORKSPACE"};
   const ProgramRun done = check(

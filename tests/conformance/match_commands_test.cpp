@@ -193,6 +193,17 @@ TEST(Outputs, an_answer_replaces_answers_only) {
   }
 }
 
+// A script that reads the file must not see the answer before as that of the failed command.
+TEST(Outputs, an_error_replaces_a_report_that_is_json) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder.path();
+  const Words steady{"steady", "--current-on", "3A", "--time-on", "1s", "--time-off", "1s", "--report", "r.json", "--motor"};
+  EXPECT_EQ(run(steady + Words{"maxon_ecx_flat_42m_24v"}, options).exit_code, 0);
+  EXPECT_EQ(run(steady + Words{"nobody"}, options).exit_code, 2);
+  EXPECT_THAT(content_of(folder.path() / "r.json"), testing::AllOf(HasSubstr("\"error\""), HasSubstr("nobody")));
+}
+
 TEST(Outputs, never_replace_what_the_command_reads) {
   const auto& [folder, robot, options] = OwnRobot();
   const Words duty{"--robot", "mine.toml", "--duty", "paper_intermittent"};

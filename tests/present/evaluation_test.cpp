@@ -261,6 +261,18 @@ TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limi
   EXPECT_EQ(rest.at("never"), nlohmann::ordered_json::array({"rest_half_s", "rest_all_s"}));
 }
 
+// A longer rest may suffice: it was not computed.
+TEST(EvaluationJson, RestAboveTheLongestOneIsNotCalledNever) {
+  select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
+  motor.motor_id = "m";
+  simulate::EvaluationAnswer answer = answer_with({motor});
+  answer.rests["m"] = {{.play_s = 60.0, .half_s = 20.0, .all_s = {}, .starts = 4, .starts_never = 1, .over_without_current = false}};
+  const nlohmann::ordered_json rest = evaluation_json(answer).at("motors").at(0).at("rest_of_hot_motor").at(0);
+  EXPECT_TRUE(rest.at("rest_all_s").is_null());
+  EXPECT_EQ(rest.at("never"), nlohmann::ordered_json::array());
+  EXPECT_EQ(rest.at("longest_rest_s"), select::kLongestRest_s);
+}
+
 select::MotorEvaluation undecided(const std::string& id, int over_of_75_games) {
   const double share = over_of_75_games / 75.0;
   const base::ShareInterval interval = base::share_interval(share, 75, select::error_share(75, true));
