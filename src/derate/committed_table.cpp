@@ -320,6 +320,20 @@ void compare_tables(CurrentTable committed, const CurrentTable& fresh, double to
   }
 }
 
+/// Throws Failure (bad_input) if an axis of a CSV table is shorter than that of a fresh one: what its reader does beyond it is unknown.
+void require_range(const CommittedTable& committed, std::string_view name, std::string_view unit, double CommittedRow::*column,
+                   double first, double last) {
+  constexpr double kRounding_share = 1e-4;
+  const auto [least, most] = std::ranges::minmax(committed.rows, {}, column);
+  const double rounding = kRounding_share * std::max(std::abs(first), std::abs(last));
+  if (least.*column > first + rounding || most.*column < last - rounding) {
+    throw base::bad_input({committed.file.string()}, std::string(name),
+                          fmt::format("the table covers {:.4g} to {:.4g} {}, a fresh one {:.4g} to {:.4g} {}: it is cut off, or was written "
+                                      "with other values; write it again with `heatsoak derate --to csv`",
+                                      least.*column, most.*column, unit, first, last, unit));
+  }
+}
+
 void compare_rows(const std::vector<CommittedRow>& rows, const CurrentTable& fresh, double tolerance_A, TableComparison& found) {
   for (const CommittedRow& row : rows) {
     const double fresh_A = fresh.allowed_A(row.speed_rad_per_s, row.stator_C, row.winding_C);
@@ -413,6 +427,13 @@ TableComparison compare(const CommittedTable& committed, const Derating& fresh) 
   if (committed.table) {
     compare_tables(*committed.table, committed.is_integer ? integer_form::QuantisedTable(fresh.table).in_units() : fresh.table, rounding_A,
                    found);
+  }
+  if (!committed.rows.empty()) {
+    const CurrentTable& table = fresh.table;
+    const double last_speed_rad_per_s = std::max(table.speed_rad_per_s.back(), table.no_current_speed_rad_per_s);
+    require_range(committed, "speed", "rad/s", &CommittedRow::speed_rad_per_s, table.speed_rad_per_s.front(), last_speed_rad_per_s);
+    require_range(committed, "stator", "°C", &CommittedRow::stator_C, table.stator_C.front(), table.stator_C.back());
+    require_range(committed, "winding", "°C", &CommittedRow::winding_C, table.winding_C.front(), table.winding_C.back());
   }
   compare_rows(committed.rows, fresh.table, rounding_A, found);
   if (!committed.code.empty()) {

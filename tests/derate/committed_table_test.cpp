@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <sstream>
 
 #include "base/diagnostic.h"
 #include "base/files.h"
@@ -17,6 +18,7 @@ namespace heatsoak::derate {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 Derating derating_with(const motor::Motor& motor, double heat_safety_factor, double approach_s = 0.5) {
@@ -294,6 +296,28 @@ TEST_F(Tampered, HexadecimalConstantIsCompared) {
   ASSERT_NE(at, std::string::npos);
   text[at + 11] = text[at + 11] == '1' ? '2' : '1';
   EXPECT_FALSE(compare(read(text), *fresh_).differing.empty());
+}
+
+// Its rows are a full grid and agree with the fresh table, but its reader would extrapolate the current of a cooler winding.
+TEST_F(Tampered, CsvTableThatEndsBeforeTheFreshOneIsRefused) {
+  std::istringstream csv(exported_text(*fresh_, "csv"));
+  const double middle_C = 0.5 * (fresh_->table.winding_C.front() + fresh_->table.winding_C.back());
+  std::string cut;
+  for (std::string line; std::getline(csv, line);) {
+    std::istringstream cells(line);
+    double speed_rad_per_s = 0.0;
+    double stator_C = 0.0;
+    double winding_C = 0.0;
+    char comma = 0;
+    const bool is_row = static_cast<bool>(cells >> speed_rad_per_s >> comma >> stator_C >> comma >> winding_C);
+    cut += is_row && winding_C > middle_C ? "" : line + "\n";
+  }
+  try {
+    compare(read(cut), *fresh_);
+    FAIL() << "a table without hot windings was accepted";
+  } catch (const base::Failure& failure) {
+    EXPECT_THAT(failure.what(), AllOf(HasSubstr("winding"), HasSubstr("covers"), HasSubstr("cut off")));
+  }
 }
 
 TEST_F(Tampered, WhatIsNoTableIsRefused) {
