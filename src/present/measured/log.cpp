@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/counted.h"
 #include "base/quantity.h"
 #include "present/measured/log_json.h"
 #include "present/measured/log_words.h"
@@ -155,7 +156,8 @@ Document logs_document(std::span<const recording::InspectedLog> logs) {
 
 Document conversion_document(const recording::ConvertedLog& log, const std::string& out) {
   Document document =
-      short_answer(fmt::format("{} of {} rows and {} channels converted.", log.report.rows_kept, log.report.rows_in_file, log.channels),
+      short_answer(fmt::format("{} of {} and {} converted.", log.report.rows_kept, base::counted(log.report.rows_in_file, "row"),
+                               base::counted(log.channels, "channel")),
                    conversion_json(log, out));
   document.add_file(out);
   return document;
