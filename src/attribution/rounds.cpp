@@ -12,12 +12,9 @@
 #include "base/parallel.h"
 #include "calibration/motor_model.h"
 #include "calibration/unlogged_speed.h"
-#include "estimation/averaged_run.h"
 #include "estimation/left_out_runs.h"
-#include "estimation/model_screening.h"
 #include "estimation/smoothed_path.h"
 #include "estimation/thresholds.h"
-#include "estimation/usual_heat.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -93,21 +90,14 @@ Judged Rounds::run_rounds() {
 }
 
 void Rounds::begin() {
-  std::vector<std::vector<double>> start_C;
-  std::vector<estimation::LinearisedRun> paths;
-  for (const estimation::MeasuredRun& run : input_.runs) {
-    start_C.push_back(estimation::measured_start_C(input_.model.network, run));
-    paths.push_back(estimation::linearise(input_.model, start_C.back(), run));
-    merged_.push_back(estimation::mergeable_samples(paths.back()));
-  }
-  out_.mean_heat_W = estimation::usual_heat_W(input_.model, input_.runs, start_C);
-  unit_W_ = estimation::material_heat_W(paths, estimation::thresholds().material_K);
-  now_ = estimation::posterior_of(input_.model, input_.runs, start_C, plain_options());
+  estimation::FirstFit first = estimation::first_fit(input_.model, input_.runs, {.starts = 0});
+  now_ = std::move(first.fit);
+  setup_ = std::move(first.setup);
+  out_.weights = setup_.weights;
+  out_.mean_heat_W = setup_.mean_heat_W;
   const estimation::Thresholds& limits = estimation::thresholds();
-  out_.material_W =
-      std::max({unit_W_, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
-  grid_ = estimation::flux_grid(unit_W_, estimation::travel_K(input_.runs), input_.model.flux_nodes.size());
-  out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
+  out_.material_W = std::max(
+      {setup_.material_W, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
   list_ = candidates_for(input_.model, input_.runs);
   if (is_speed_open_) {
     // Heat at the stator may be the loss at the speed that was not logged.
@@ -129,7 +119,7 @@ void Rounds::begin() {
       rule.companions.push_back(companion++);
     }
   }
-  place_ = grid_.middle();
+  place_ = setup_.grid.middle();
 }
 
 Judged Rounds::judge() {
@@ -155,14 +145,14 @@ Judged Rounds::judge() {
           calibration::kSheet_sd * judged.fitted[r].by_parameter.col(parameters_[i]);
     }
   });
-  judged.designs = estimation::design(base.network, judged.fitted, input_.runs, out_.weights, merged_, extra);
+  judged.designs = estimation::design(base.network, judged.fitted, input_.runs, setup_.weights, setup_.merged, extra);
   const estimation::ThetaPrior prior = estimation::prior_here(base);
   judged.empty_place = best_place(judged.designs, prior, {}, place_);
   std::map<estimation::FluxPlace, estimation::Reduced> points;
-  add_points(judged.designs, prior, grid_.star(judged.empty_place), points);
-  add_points(judged.designs, prior, grid_.all_over(), points);
+  add_points(judged.designs, prior, setup_.grid.star(judged.empty_place), points);
+  add_points(judged.designs, prior, setup_.grid.all_over(), points);
   if (!best_.empty()) {
-    add_points(judged.designs, prior, grid_.star(best_place_), points);
+    add_points(judged.designs, prior, setup_.grid.star(best_place_), points);
   }
   // The most probable unknown heat with the best set differs from that without effects.
   constexpr int kMostMoves = 3;
@@ -176,7 +166,7 @@ Judged Rounds::judge() {
     search_.emplace(std::move(all), set_rules_, rules_);
     take_best(judged, prior);
     const std::size_t before = points.size();
-    add_points(judged.designs, prior, grid_.star(judged.best_place), points);
+    add_points(judged.designs, prior, setup_.grid.star(judged.best_place), points);
     if (points.size() == before) {
       break;
     }
@@ -185,7 +175,7 @@ Judged Rounds::judge() {
   search_->reconsider(
       [&](const std::vector<int>& members, const SetSearch::AtBest& at) {
         const estimation::Model model = with_members(members, at, ShapesAre::free);
-        const estimation::PosteriorOptions options = options_with(grid_.at(judged.places[at.point]));
+        const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(judged.places[at.point]));
         return estimation::try_posterior_of(model, input_.runs, starts_of(model), options).evidence_nats;
       },
       kMostFits);
@@ -213,7 +203,7 @@ void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const
     }
   }
   base::in_parallel(wanted.size(), 0, [&](std::size_t i) {
-    wanted[i]->second = estimation::reduced(estimation::products_of(designs, grid_.at(wanted[i]->first), {}), prior);
+    wanted[i]->second = estimation::reduced(estimation::products_of(designs, setup_.grid.at(wanted[i]->first), {}), prior);
   });
 }
 
@@ -234,7 +224,7 @@ Eigen::VectorXd Rounds::left_out_nats(const Judged& judged, const std::vector<in
   const auto [set, columns] = own_columns(members);
   std::vector<estimation::Products> parts;
   for (const estimation::DesignRun& design : judged.designs) {
-    parts.push_back(estimation::products_of({&design, 1}, grid_.at(judged.best_place), columns));
+    parts.push_back(estimation::products_of({&design, 1}, setup_.grid.at(judged.best_place), columns));
   }
   return estimation::left_out_nats(estimation::by_recording(parts, input_.runs), estimation::prior_here(base_here()),
                                    [&](const estimation::Reduced& at) { return at.base_nats + set_gain_nats(at, set); });
@@ -243,8 +233,8 @@ Eigen::VectorXd Rounds::left_out_nats(const Judged& judged, const std::vector<in
 estimation::FluxPlace Rounds::best_place(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
                                          const std::vector<int>& members, const estimation::FluxPlace& start) const {
   const auto [set, columns] = own_columns(members);
-  return estimation::most_probable(grid_, start, [&](const estimation::FluxPlace& place) {
-    const estimation::Reduced own = estimation::reduced(estimation::products_of(designs, grid_.at(place), columns), prior);
+  return estimation::most_probable(setup_.grid, start, [&](const estimation::FluxPlace& place) {
+    const estimation::Reduced own = estimation::reduced(estimation::products_of(designs, setup_.grid.at(place), columns), prior);
     return own.base_nats + set_gain_nats(own, set);
   });
 }
@@ -274,7 +264,7 @@ estimation::Model Rounds::with_members(const std::vector<int>& members, const Se
 
 void Rounds::follow(const Judged& judged) {
   estimation::Posterior next = estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs,
-                                                            now_.start_C, options_with(grid_.at(judged.best_place)));
+                                                            now_.start_C, setup_.with(setup_.grid.at(judged.best_place)));
   if (!std::isfinite(next.evidence_nats)) {
     return;
   }
@@ -291,7 +281,8 @@ void Rounds::follow(const Judged& judged) {
       candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
     }
   }
-  out_.weights = estimation::weights_by_model(now_.fitted, input_.runs, unit_W_);
+  setup_.screen(now_.fitted, input_.runs);
+  out_.weights = setup_.weights;
 }
 
 double Rounds::away_from_zero(double share) {
@@ -355,50 +346,24 @@ void Rounds::note_sight() {
   out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
 }
 
-estimation::PosteriorOptions Rounds::options_with(const estimation::LatentFlux& flux) const {
-  estimation::PosteriorOptions options;
-  options.flux = flux;
-  options.weights = out_.weights;
-  options.merged = merged_;
-  return options;
-}
-
-estimation::PosteriorOptions Rounds::final_options(const estimation::FluxPlace& place) const {
-  estimation::PosteriorOptions options = options_with(grid_.at(place));
-  for (const estimation::FluxPlace& each : grid_.star(place)) {
-    options.around.push_back(grid_.at(each));
-  }
-  return options;
-}
-
-estimation::PosteriorOptions Rounds::plain_options() const {
-  constexpr int kMostSteps = 20;
-  estimation::PosteriorOptions plain = estimation::least_squares_options(input_.model, kMostSteps);
-  // Halved steps reach the minimum from a start that is wrong by 40 K, where smaller boxes stop early.
-  plain.holds_covariance = false;
-  plain.weights = out_.weights;
-  plain.merged = merged_;
-  return plain;
-}
-
 estimation::Posterior Rounds::to_predict(estimation::Posterior fit) const {
   return fit.flux.drift_K > 0.0 ? more_predictive(std::move(fit), input_.runs) : fit;
 }
 
 estimation::Posterior Rounds::more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const {
-  const estimation::PosteriorOptions whitened = options_with(fit.flux);
-  return estimation::more_predictive(std::move(fit), runs, whitened, plain_options());
+  const estimation::PosteriorOptions whitened = setup_.with(fit.flux);
+  return estimation::more_predictive(std::move(fit), runs, whitened, setup_.plain());
 }
 
 void Rounds::own_parameters(const Judged& judged) {
   const estimation::Model start = base_here();
-  out_.before = estimation::posterior_of(start, input_.runs, starts_of(start), final_options(judged.empty_place));
+  out_.before = estimation::posterior_of(start, input_.runs, starts_of(start), setup_.around(judged.empty_place));
   out_.own = out_.before;
   std::vector<int> doubted;
   std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });
   if (!doubted.empty()) {
     const estimation::Model with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
-    out_.own = estimation::posterior_of(with_changes, input_.runs, starts_of(with_changes), final_options(judged.best_place));
+    out_.own = estimation::posterior_of(with_changes, input_.runs, starts_of(with_changes), setup_.around(judged.best_place));
   }
   // An effect that is missing here biases the whitened fit even without drift.
   out_.own = more_predictive(std::move(out_.own), input_.runs);
@@ -413,7 +378,7 @@ std::vector<std::vector<double>> Rounds::starts_of(const estimation::Model& mode
 }
 
 std::map<std::string, double> Rounds::left_by(const estimation::Posterior& fit) const {
-  const Eigen::VectorXd rms_W = estimation::rms_W(estimation::smoothed_flux(fit, input_.runs, out_.weights, merged_));
+  const Eigen::VectorXd rms_W = estimation::rms_W(estimation::smoothed_flux(fit, input_.runs, setup_.weights, setup_.merged));
   std::map<std::string, double> left;
   for (std::size_t f = 0; f < input_.model.flux_nodes.size(); ++f) {
     left[std::string(input_.model.network.node_name(input_.model.flux_nodes[f]))] = rms_W[static_cast<Eigen::Index>(f)];

@@ -9,7 +9,7 @@
 #include "attribution/selection.h"
 #include "attribution/set_search.h"
 #include "attribution/terms.h"
-#include "estimation/flux_grid.h"
+#include "estimation/fit.h"
 
 namespace heatsoak::attribution {
 
@@ -64,17 +64,11 @@ class Rounds {
   void note();
   /// Records the effects whose expected gain at typical size is below `seen_nats`.
   void note_sight();
-  /// Returns options for a fit with one assumption about the unknown heat.
-  [[nodiscard]] estimation::PosteriorOptions options_with(const estimation::LatentFlux& flux) const;
-  /// Returns options for a fit that is averaged over the neighbours of `place`.
-  [[nodiscard]] estimation::PosteriorOptions final_options(const estimation::FluxPlace& place) const;
   /// Returns `fit` or plain least squares of the free runs, by the rule of estimation::more_predictive().
   [[nodiscard]] estimation::Posterior more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const;
   /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Returns
   /// more_predictive() for such a fit, otherwise `fit`.
   [[nodiscard]] estimation::Posterior to_predict(estimation::Posterior fit) const;
-  /// Returns options for plain least squares of the free runs, without unknown heat.
-  [[nodiscard]] estimation::PosteriorOptions plain_options() const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters
   /// (`own`).
   void own_parameters(const Judged& judged);
@@ -88,10 +82,7 @@ class Rounds {
   bool is_speed_open_;  ///< speed was not logged: heat at the stator may be the loss at speed
   Selection out_;
   estimation::Posterior now_;  ///< fit along which the equations are linearised
-  std::vector<int> merged_;
-  /// Unknown heat in W that warms the outermost node by `material_K`; scale of the grid.
-  double unit_W_ = 0.0;
-  estimation::FluxGrid grid_;
+  estimation::FitSetup setup_;
   estimation::FluxPlace place_, best_place_;
   CandidateList list_;
   std::vector<Eigen::Index> parameters_;

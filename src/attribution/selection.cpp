@@ -22,14 +22,6 @@ class Selector : Rounds {
  public:
   using Rounds::Rounds;
 
-  double evidence_without_effects_nats() {
-    begin();
-    const std::vector<estimation::DesignRun> designs =
-        estimation::design(now_.model.network, now_.fitted, input_.runs, out_.weights, merged_, {});
-    const estimation::LatentFlux flux = grid_.at(best_place(designs, estimation::prior_here(now_.model), {}, place_));
-    return estimation::posterior_of(now_.model, input_.runs, now_.start_C, options_with(flux)).evidence_nats;
-  }
-
   Selection run() {
     decide(run_rounds());
     return std::move(out_);
@@ -58,7 +50,7 @@ class Selector : Rounds {
     }
     const estimation::Model with_best = with_members(supported, search_->at_best(supported), ShapesAre::held);
     const estimation::Posterior full =
-        estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), options_with(grid_.at(judged.best_place)));
+        estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), setup_.with(setup_.grid.at(judged.best_place)));
     out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
     const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - sure;
     if (rules_.scans_regressors && !is_speed_open_ && (is_something_missing || !named.empty())) {
@@ -115,14 +107,15 @@ class Selector : Rounds {
     for (std::size_t r = 0; out_.is_material() && r < path.size(); ++r) {
       const std::vector<estimation::DesignRun> own =
           estimation::design(now_.model.network, {now_.fitted[r]}, {input_.runs[r]}, {out_.weights[r]}, {}, {});
-      path[r].state_C = estimation::smoothed_path_C(now_.fitted[r], grid_.at(judged.best_place), own.front().noise).topRows(path[r].states);
+      path[r].state_C =
+          estimation::smoothed_path_C(now_.fitted[r], setup_.grid.at(judged.best_place), own.front().noise).topRows(path[r].states);
     }
     out_.regressors = regressors_of(base, path, input_.runs);
     const ScanInput input{&base,           &input_.runs,
                           &judged.fitted,  &out_.regressors,
                           &judged.designs, estimation::prior_here(base),
                           &set_rules_,     best.members,
-                          grid_,           {judged.best_place, judged.empty_place},
+                          setup_.grid,     {judged.best_place, judged.empty_place},
                           out_.mean_heat_W};
     out_.rounds.back().scan = scan_regressors(input, rules_, kMostReported);
   }
@@ -158,7 +151,7 @@ class Selector : Rounds {
     std::ranges::sort(kept);
     const SetSearch::AtBest at = search_->at_best(kept);
     const estimation::Model model = with_members(kept, at, ShapesAre::held);
-    const estimation::PosteriorOptions options = options_with(grid_.at(best_place_));
+    const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(best_place_));
     const estimation::Posterior fit = to_predict(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
@@ -170,7 +163,7 @@ class Selector : Rounds {
   }
 
   void keep_as_it_is(const Judged& judged) {
-    estimation::PosteriorOptions as_it_is = options_with(grid_.at(judged.empty_place));
+    estimation::PosteriorOptions as_it_is = setup_.with(setup_.grid.at(judged.empty_place));
     as_it_is.most_steps = 0;
     out_.after = out_.own = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.full_prior().precision.inverse();
@@ -216,7 +209,7 @@ class Selector : Rounds {
     }
     const std::vector<int> kept = kept_members(best, named);
     const estimation::Model model = with_members(kept, search_->at_best(kept), ShapesAre::free);
-    return estimation::try_posterior_of(model, input_.runs, starts_of(model), final_options(judged.best_place));
+    return estimation::try_posterior_of(model, input_.runs, starts_of(model), setup_.around(judged.best_place));
   }
 
   void build(const Judged& judged, const EffectSet& best, std::vector<std::size_t> named) {
@@ -273,7 +266,7 @@ class Selector : Rounds {
     if (const std::optional<estimation::Model> curved = with_curve(out_.after.model, curve, regressor)) {
       std::vector<estimation::MeasuredRun> runs = input_.runs;
       estimation::set_columns(runs, curved->columns);
-      estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, final_options(judged.best_place));
+      estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, setup_.around(judged.best_place));
       term.effect_name = fit.model.network.effects().back().name;
       // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
       out_.after = out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
@@ -298,11 +291,6 @@ class Selector : Rounds {
 
 bool Selection::is_material() const {
   return std::ranges::any_of(left_W, [&](const auto& each) { return each.second > material_W; });
-}
-
-double evidence_without_effects_nats(const SelectionInput& input) {
-  const SelectionRules rules;
-  return Selector(input, rules).evidence_without_effects_nats();
 }
 
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules) { return Selector(input, rules).run(); }

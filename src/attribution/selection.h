@@ -116,7 +116,4 @@ struct Selection {
 /// Selects the effects. Throws Failure (numerics_failed) if the model cannot be simulated along the runs.
 Selection select_effects(const SelectionInput& input, const SelectionRules& rules);
 
-/// Returns the ln evidence of the model without effects, with fitted parameters and the most probable unknown heat.
-double evidence_without_effects_nats(const SelectionInput& input);
-
 }  // namespace heatsoak::attribution

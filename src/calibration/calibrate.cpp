@@ -22,6 +22,7 @@
 #include "calibration/written_forecast.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
+#include "estimation/thresholds.h"
 #include "estimation/turning_rows.h"
 #include "motor/write_motor.h"
 #include "recording/fingerprint.h"
@@ -201,17 +202,13 @@ class Calibrating {
     for (std::size_t i = 0; i < fit.flux.rms_W.size(); ++i) {
       most_W = certain_W.empty() || certain_W[i] == 0.0 ? std::max(most_W, fit.flux.rms_W[i]) : most_W;
     }
-    constexpr double kAlmost = 0.95;
-    constexpr double kMuch_share = 0.1;
-    if (most_W > kAlmost * estimation::kMostFlux_share * fit.usual_heat_W) {
-      all_.findings.push_back(UnmodelledHeat{estimation::kMostFlux_share, fit.usual_heat_W, true});
-    } else if (most_W > kMuch_share * fit.usual_heat_W) {
-      all_.findings.push_back(UnmodelledHeat{most_W / fit.usual_heat_W, fit.usual_heat_W, false});
+    if (const double share = most_W / fit.setup.mean_heat_W; share > estimation::thresholds().material_share) {
+      all_.findings.push_back(UnmodelledHeat{share, fit.setup.mean_heat_W, fit.is_flux_limited});
     }
-    for (std::size_t kind = 0; kind < fit.drift_K.size(); ++kind) {
-      all_.findings.push_back(SensorDrift{fit.sensor_nodes[kind], fit.drift_K[kind], fit.drift_time_scale_s});
+    if (fit.flux.drift_K > 0.0) {
+      all_.findings.push_back(SensorDrift{fit.flux.drift_K, fit.flux.drift_time_scale_s});
     }
-    if (std::ranges::find(fit.sensor_nodes, "winding") == fit.sensor_nodes.end()) {
+    if (std::ranges::none_of(all_.runs, [](const estimation::MeasuredRun& run) { return run.sensor_at("winding").has_value(); })) {
       all_.findings.push_back(WindingNotMeasured{});
     }
     if (fit.free_run_error_K) {
@@ -342,7 +339,7 @@ class Calibrating {
           each.exponents.cwiseAbs().sum() == 1.0) {
         const auto [low, high] = profile_interval(model, all_.runs, fit, static_cast<int>(only));
         // The profile keeps the flux fixed; widen it for the uncertainty of the flux by the same factor as the curvature.
-        const double widened = sd / std::max(1e-9, std::sqrt(fit.hypotheses.front().covariance(only, only)));
+        const double widened = sd / std::max(1e-9, std::sqrt(fit.covariance_at_flux(only, only)));
         below = (fit.theta[only] - low) * std::max(1.0, widened);
         above = (high - fit.theta[only]) * std::max(1.0, widened);
         parameter.by_profile = true;
@@ -375,14 +372,14 @@ class Calibrating {
                          }));
   }
 
-  /// Returns the signals that the fitted model does not follow.
+  /// Returns the signals that the fitted model does not follow. A model with values that its file excludes must follow more closely.
   [[nodiscard]] std::vector<PoorFit> not_followed(std::span<const ErrorBeforeAfter> errors) const {
     constexpr double kFar_K = 20.0;
-    constexpr double kFar_share = 0.4;
+    const double far_share = has_finding<LargeChange>(all_.findings) ? 0.0 : 0.4;
     std::vector<PoorFit> found;
     for (const ErrorBeforeAfter& each : errors) {
       const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
-      if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
+      if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, far_share * moves_K)) {
         found.push_back({each.signal, each.after.rmse_K, moves_K});
       }
     }
@@ -484,12 +481,12 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
       fit.unmodelled_heat_share = unmodelled->share;
     }
   }
-  for (std::size_t i = 0; i < calibration.fit.sensor_nodes.size(); ++i) {
-    const std::string& node = calibration.fit.sensor_nodes[i];
-    const estimation::MeasuredRun& run =
-        *std::ranges::find_if(calibration.runs, [&](const estimation::MeasuredRun& r) { return r.sensor_at(node).has_value(); });
-    const double noise_K = run.sensors[static_cast<std::size_t>(run.sensor_at(node).value())].noise_K * calibration.fit.noise_ratio[i];
-    fit.noise_K.emplace_back(node, noise_K);
+  for (const estimation::MeasuredRun& run : calibration.runs) {
+    for (const estimation::Sensor& sensor : run.sensors) {
+      if (std::ranges::find(fit.noise_K, sensor.node, [](const auto& each) { return each.first; }) == fit.noise_K.end()) {
+        fit.noise_K.emplace_back(sensor.node, sensor.noise_K);
+      }
+    }
   }
   fit.band = calibration.forecast->band;
   motor::refresh_values(result);

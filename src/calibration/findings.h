@@ -23,9 +23,8 @@ struct UnmodelledHeat {
   double usual_heat_W = 0.0;  ///< heat that flows through the motor on average
   bool exceeds_share = false;
 };
-/// The error of a sensor changes slowly: a sensor error, or an error of the two-node model.
+/// The errors of the sensors change slowly: sensor errors, or an error of the two-node model.
 struct SensorDrift {
-  std::string node;
   double drift_K = 0.0;  ///< standard deviation
   double time_scale_s = 0.0;
 };

@@ -278,8 +278,7 @@ bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter) {
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const estimation::Fit& fit,
                                            std::span<const estimation::MeasuredRun> runs, std::span<const CalibratedParameter> parameters) {
   const Eigen::Index count = motor.model.free_count();
-  const Eigen::MatrixXd triangle = fit.data_triangle.topLeftCorner(count, count);
-  Eigen::MatrixXd data = triangle.transpose() * triangle;
+  Eigen::MatrixXd data = fit.information;
   const Eigen::MatrixXd known = motor.model.prior.precision.inverse();
   std::vector<Eigen::Index> asked;
   for (Eigen::Index i = 0; i < count; ++i) {

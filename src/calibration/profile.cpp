@@ -16,13 +16,9 @@ constexpr double kDrop = 1.92;
 
 std::pair<double, double> profile_interval(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
                                            const estimation::Fit& fit, int parameter) {
-  std::vector<std::vector<double>> start_C;
-  std::ranges::transform(fit.starts, std::back_inserter(start_C),
-                         [](const estimation::RunStart& start) { return std::vector(start.state_C.begin(), start.state_C.end()); });
-  estimation::PosteriorOptions options{.flux = fit.flux, .holds_covariance = true, .held = parameter};
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    options.noise.push_back(estimation::noise_of(runs[r], fit, r));
-  }
+  estimation::PosteriorOptions options = fit.setup.with(fit.flux);
+  options.holds_covariance = true;
+  options.held = parameter;
   const double sd = std::sqrt(fit.covariance(parameter, parameter));
   const Eigen::VectorXd direction = fit.covariance.col(parameter) / fit.covariance(parameter, parameter);
   const auto cost = [&](double moved) {
@@ -30,7 +26,7 @@ std::pair<double, double> profile_interval(const estimation::Model& model, const
     estimation::Model there = model;
     there.set_theta(fit.theta + moved * direction);
     // Not the sum of squares: the covariance of the unknown heat changes with the parameters, and its determinant counts.
-    return -estimation::try_posterior_of(std::move(there), runs, start_C, options).evidence_nats;
+    return -estimation::try_posterior_of(std::move(there), runs, fit.start_C, options).evidence_nats;
   };
   const double least = cost(0.0);
   const auto end = [&](double sign) {

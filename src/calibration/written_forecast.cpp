@@ -64,7 +64,9 @@ void score_innovations(const ForecastModel& model, estimation::FitOptions option
     ForecastFit found;
     found.theta = std::move(others.theta);
     found.covariance = std::move(others.covariance);
-    found.starts = std::move(others.starts);
+    for (const std::vector<double>& start_C : others.start_C) {
+      found.starts.push_back({Eigen::Map<const Eigen::VectorXd>(start_C.data(), std::ssize(start_C)), {}, {}});
+    }
     return found;
   };
   const PieceScore score = score_pieces(model, calibration.runs, forecast.pieces, fit_without);

@@ -16,6 +16,7 @@
 #include "diagnosis/coverage.h"
 #include "diagnosis/heat_of_effects.h"
 #include "diagnosis/unexplained_heat.h"
+#include "estimation/fit.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
@@ -272,8 +273,7 @@ void settle_turning_rows(DiagnosisInput& input) {
   }
   std::vector<estimation::MeasuredRun> turning;
   std::ranges::transform(input.train, std::back_inserter(turning), estimation::turning_within_rows);
-  if (attribution::evidence_without_effects_nats({input.model, turning, input.usual}) <=
-      attribution::evidence_without_effects_nats({input.model, input.train, input.usual})) {
+  if (estimation::evidence_nats(input.model, turning) <= estimation::evidence_nats(input.model, input.train)) {
     return;
   }
   input.train = std::move(turning);

@@ -1,20 +1,37 @@
-// Fits the free parameters of a model to one or more runs at once, in the presence of an unknown heat flux.
+// Fit of a model to all runs, beside the most probable unknown heat. It is the whole of a calibration, and the start of an attribution,
+// which adds effects to the same posterior.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "estimation/evidence.h"
-#include "estimation/flux_search.h"
+#include "estimation/flux_grid.h"
 #include "estimation/measured_run.h"
 #include "estimation/model.h"
-#include "estimation/open_loop.h"
+#include "estimation/posterior.h"
 
 namespace heatsoak::estimation {
+
+/// Samples and grid of the unknown heat that all fits to the same runs share.
+struct FitSetup {
+  std::vector<int> merged;               ///< per run, number of samples per average
+  std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for samples that the model excludes as wrong; empty: all 1
+  double mean_heat_W = 0.0;              ///< see usual_heat_W()
+  double material_W = 0.0;               ///< unknown heat that warms the outermost body by `material_K`; scale of the grid
+  FluxGrid grid;
+
+  /// Returns options for a fit with one assumption about the unknown heat.
+  [[nodiscard]] PosteriorOptions with(const LatentFlux& flux) const;
+  /// Returns options for a fit that is averaged over the neighbours of `place`.
+  [[nodiscard]] PosteriorOptions around(const FluxPlace& place) const;
+  /// Returns options for plain least squares of the free runs, without unknown heat.
+  [[nodiscard]] PosteriorOptions plain() const;
+  /// Repeats the screening of the samples along a fit.
+  void screen(const std::vector<LinearisedRun>& fitted, const std::vector<MeasuredRun>& runs);
+};
 
 struct FitOptions {
   int starts = 8;             ///< Latin hypercube points in addition to the model's own values; 0: only the latter
@@ -24,41 +41,40 @@ struct FitOptions {
   bool with_flux = true;      ///< false: assumes no unknown heat flux (for comparison)
 };
 
-/// One setting of the unknown heat flux and sensor drift, with its probability and the resulting fit.
-struct Hypothesis {
-  Supposition supposition;
-  double weight = 0.0;  ///< posterior probability; the sum over all hypotheses is 1
-  Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;
+/// Plain least squares of the free runs, and the samples that agree with it.
+struct FirstFit {
+  Posterior fit;
+  FitSetup setup;
 };
+/// Throws Failure (cannot_answer) if the simulation diverges from every starting point.
+FirstFit first_fit(const Model& model, const std::vector<MeasuredRun>& runs, const FitOptions& options);
+
+/// Returns the most probable unknown heat of a model without added effects. `designs`: without further columns.
+FluxPlace most_probable_heat(const std::vector<DesignRun>& designs, const ThetaPrior& prior, const FluxGrid& grid, FluxPlace start);
 
 struct Fit {
   Eigen::VectorXd theta;
-  Eigen::MatrixXd covariance;   ///< covariance of θ, averaged over all hypotheses
-  LatentFlux flux;              ///< most probable value
-  std::vector<double> drift_K;  ///< most probable drift (standard deviation) per entry of sensor_nodes; empty: no sensor drifts
-  double drift_time_scale_s = 0.0;
-  double usual_heat_W = 0.0;        ///< mean over time of the heat that the model generates or dissipates, whichever is larger
-  std::vector<double> noise_ratio;  ///< per entry of sensor_nodes: noise found by the fit divided by the model-free estimate
-  std::vector<std::string> sensor_nodes;
-  std::vector<Hypothesis> hypotheses;
-  std::vector<RunStart> starts;          ///< per run
-  std::vector<Eigen::VectorXd> weights;  ///< per run and sample (n·s): 1, less for an outlier, 0 if rejected
-  double rejected_share = 0.0;           ///< fraction of the samples with weight 0
-  double log_evidence = 0.0;             ///< in nats, at the most probable flux and the parameters that are most probable with it
-  int iterations = 0;
+  Eigen::MatrixXd covariance;                ///< covariance of θ, averaged over the neighbours of `flux`
+  Eigen::MatrixXd covariance_at_flux;        ///< covariance of θ, given `flux`
+  Eigen::MatrixXd information;               ///< inverse covariance of θ by the data alone, given `flux`
+  LatentFlux flux;                           ///< most probable value
+  bool is_flux_limited = false;              ///< a larger unknown heat may be more probable
+  std::vector<std::vector<double>> start_C;  ///< start temperatures per run
+  FitSetup setup;
+  double log_evidence = 0.0;  ///< in nats, at `flux` and the most probable θ
   bool has_converged = false;
-  std::optional<double> free_run_error_K =
-      {};  ///< RMS error, if θ was taken from the free-run fit because that predicts whole runs far better
-  /// Factor R of the whitened [∂/∂θ, residual] of all runs at θ, without the prior: the information in the data alone.
-  Eigen::MatrixXd data_triangle;
+  /// RMS error of the runs, if θ is from plain least squares of free runs, because that predicts left-out runs clearly better.
+  std::optional<double> free_run_error_K = {};
+
+  /// Fraction of the measured samples that were excluded.
+  [[nodiscard]] double rejected_share(std::span<const MeasuredRun> runs) const;
 };
 
-/// Returns the maximum of the posterior in θ for the most probable flux and noise. Throws Failure (cannot_answer) if the simulation
-/// diverges from every starting point.
-Fit fit(const Model& model, std::span<const MeasuredRun> runs, const FitOptions& options);
+/// Returns the ln evidence of the model at the most probable unknown heat of a search from the model's values. Throws Failure as
+/// first_fit() does.
+double evidence_nats(const Model& model, const std::vector<MeasuredRun>& runs);
 
-/// Returns the noise, drift and sample weights that the fit found for the sensors of one of its runs.
-SensorNoise noise_of(const MeasuredRun& run, const Fit& fit, std::size_t run_index);
+/// Fits the model. Throws Failure as first_fit() does.
+Fit fit(const Model& model, const std::vector<MeasuredRun>& runs, const FitOptions& options);
 
 }  // namespace heatsoak::estimation

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <utility>
 
 namespace heatsoak::estimation {
@@ -51,7 +52,7 @@ double travel_K(std::span<const MeasuredRun> runs) {
 LatentFlux FluxGrid::at(const FluxPlace& place) const {
   LatentFlux flux;
   for (std::size_t f = 0; f < fluxes; ++f) {
-    flux.rms_W.push_back(rms_W[static_cast<std::size_t>(place[f])]);
+    flux.rms_W.push_back(std::max(rms_W[static_cast<std::size_t>(place[f])], least_W.empty() ? 0.0 : least_W[f]));
   }
   flux.time_scale_s = time_scale_s[static_cast<std::size_t>(place[fluxes])];
   flux.drift_K = drift_K[static_cast<std::size_t>(place[fluxes + 1])];
@@ -65,6 +66,21 @@ FluxPlace FluxGrid::middle() const {
   place.push_back(0);
   place.push_back(1);
   return place;
+}
+
+bool FluxGrid::is_largest(const FluxPlace& place) const {
+  return std::ranges::any_of(place | std::views::take(static_cast<std::ptrdiff_t>(fluxes)),
+                             [&](int strength) { return rms_W[static_cast<std::size_t>(strength)] == rms_W.back(); });
+}
+
+void FluxGrid::reach(double most_W) {
+  constexpr double kStep_ratio = 2.25;
+  while (kStep_ratio * rms_W.back() < most_W) {
+    rms_W.push_back(kStep_ratio * rms_W.back());
+  }
+  for (double& each_W : rms_W) {
+    each_W = std::min(each_W, most_W);
+  }
 }
 
 std::vector<FluxPlace> FluxGrid::all_over() const {
@@ -99,7 +115,7 @@ std::vector<FluxPlace> FluxGrid::star(const FluxPlace& place) const {
   return all;
 }
 
-FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes) {
+FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes, std::vector<double> least_W) {
   FluxGrid grid;
   grid.fluxes = fluxes;
   for (const double share : {0.02, 0.12, 0.3, 0.7, 1.6, 3.6, 8.0}) {
@@ -109,7 +125,9 @@ FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes) {
     grid.drift_K.push_back(share * travel_K);
   }
   grid.drift_time_scale_s = {10.0, 40.0, 160.0};
-  grid.time_scale_s = {40.0, 130.0, 400.0, 1200.0};
+  // Unknown heat that is certain to exist varies over minutes; a faster one would average out.
+  grid.time_scale_s = least_W.empty() ? std::vector{40.0, 130.0, 400.0, 1200.0} : std::vector{160.0, 400.0, 1200.0, 3600.0};
+  grid.least_W = std::move(least_W);
   return grid;
 }
 

@@ -153,10 +153,8 @@ class Fitter {
 
   [[nodiscard]] std::vector<DesignRun> design_of(const Posterior& at, const std::vector<Columns>& extra = {}) const {
     std::vector<DesignRun> designs = design(at.model.network, at.fitted, runs_, options_.weights, options_.merged, extra);
-    for (std::size_t r = 0; r < designs.size(); ++r) {
-      SensorNoise& noise = designs[r].noise;
-      noise = options_.noise.empty() ? noise : options_.noise[r];
-      std::ranges::transform(noise.noise_K, noise.noise_K.begin(),
+    for (DesignRun& one : designs) {
+      std::ranges::transform(one.noise.noise_K, one.noise.noise_K.begin(),
                              [&](double own_K) { return options_.white_noise_K > 0.0 ? options_.white_noise_K : own_K; });
     }
     return designs;
@@ -191,10 +189,12 @@ class Fitter {
     return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
   }
 
-  /// Sets the mean and covariance over all assumptions, Σ w·(covariance + step·stepᵀ) with w by evidence. Includes temperature differences
-  /// within bodies, see uneven_bodies().
+  /// Sets the mean and covariance over all assumptions, Σ w·(covariance + step·stepᵀ) with w by evidence. See PosteriorOptions::around.
   void average() {
-    const std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
+    std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
+    if (!options_.has_uneven_bodies) {
+      std::ranges::for_each(uneven, [](Columns& each) { each.resize(each.rows(), 0); });
+    }
     const std::vector<DesignRun> designs = design_of(now_, uneven);
     const Eigen::VectorXd theta = now_.model.theta();
     const Eigen::Index count = theta.size();

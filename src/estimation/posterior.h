@@ -24,10 +24,8 @@ struct PosteriorOptions {
   LatentFlux flux;
   std::vector<Eigen::VectorXd> weights = {};  ///< per run and sample; empty: all 1
   std::vector<int> merged = {};               ///< per run, number of samples per average; empty: no averaging
-  /// Noise and sample weights of the sensors per run, which replace those of the runs. Empty: those of the runs. Not with `merged`.
-  std::vector<SensorNoise> noise = {};
-  double white_noise_K = 0.0;  ///< if > 0, noise of every sensor in place of its own, for an incomplete model
-  int most_steps = 8;          ///< largest number of Gauss-Newton steps
+  double white_noise_K = 0.0;                 ///< if > 0, noise of every sensor in place of its own, for an incomplete model
+  int most_steps = 8;                         ///< largest number of Gauss-Newton steps
   /// Chooses the covariance of the residuals, which depends on the parameters, for the test whether a step improves the fit. true: the
   /// covariance before the step, as in iteratively reweighted least squares; a rejected step is replaced by one within a smaller box.
   /// false: the covariance after the step; a rejected step is halved.
@@ -37,6 +35,8 @@ struct PosteriorOptions {
   /// Other assumptions about the unknown heat. The result is averaged over them with their evidence as weights, so that the intervals
   /// include this uncertainty. Empty: `flux` alone.
   std::vector<LatentFlux> around = {};
+  /// Includes temperature differences within bodies in that average, see uneven_bodies(). false: the network has all bodies of the motor.
+  bool has_uneven_bodies = true;
 };
 
 /// Standard deviation of the error of an incomplete model. With the noise of the sensors alone every start would look impossible.

@@ -25,12 +25,10 @@ struct Thresholds {
   double least_equal_count = 8.0;       ///< shortest sequence of equal readings that is tested
   double confirms_share = 0.5;          ///< largest distance of the next sample that confirms an outlier, divided by that of the prediction
   double most_rejected_share = 0.1;     ///< fraction of rejected samples above which the model is wrong rather than the samples
-  double suspect_sd = 2.5;              ///< innovation above which a sample loses weight in a fit
   // Fit.
-  double material_share = 0.1;       ///< fraction of the mean heat from which unknown heat matters
-  double beyond_chance_ratio = 8.0;  ///< χ² per parameter from which two fits of one motor disagree
-  double seen_share = 2.0 / 3.0;     ///< fraction of every run that a fit sees before it predicts the rest
-  double matters_K = 0.1;            ///< smaller differences between errors do not matter
+  double material_share = 0.1;    ///< fraction of the mean heat from which unknown heat matters
+  double seen_share = 2.0 / 3.0;  ///< fraction of every run that a fit sees before it predicts the rest
+  double matters_K = 0.1;         ///< smaller differences between errors do not matter
   // Rows.
   double least_rows_count = 10.0;  ///< shortest run
   double longest_pause_s = 10.0;   ///< longest pause within a run
@@ -67,10 +65,7 @@ inline constexpr std::array kThresholds{
     ThresholdSpec{"least_equal_count", "samples", "fewer have no information at usual noise", &Thresholds::least_equal_count, 1e9},
     ThresholdSpec{"confirms_share", "", "half way between the reading and the prediction", &Thresholds::confirms_share, 0.0},
     ThresholdSpec{"most_rejected_share", "", "judgement: more wrong samples mean a wrong model", &Thresholds::most_rejected_share, 1.0},
-    ThresholdSpec{"suspect_sd", "sd", "1 % of the good samples (noise level)", &Thresholds::suspect_sd, 1e9},
     ThresholdSpec{"material_share", "", "judgement: losses are hardly known to a tenth", &Thresholds::material_share, 0.0},
-    ThresholdSpec{"beyond_chance_ratio", "", "2.8 standard deviations per parameter: covariances are too small if bodies are missing",
-                  &Thresholds::beyond_chance_ratio, 0.0},
     ThresholdSpec{"seen_share", "", "judgement", &Thresholds::seen_share, 0.9},
     ThresholdSpec{"matters_K", "K", "accuracy of ordinary sensors", &Thresholds::matters_K, 0.0},
     ThresholdSpec{"least_rows_count", "rows", "judgement: shorter runs contain no time constant", &Thresholds::least_rows_count, 2.0},

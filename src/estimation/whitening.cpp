@@ -41,8 +41,7 @@ using ConstRowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 
 Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const SensorNoise& noise)
     : run_(&run),
       flux_(flux),
-      drift_K_(noise.drift_K.empty() ? std::vector<double>(static_cast<std::size_t>(run.sensors()), flux.drift_K) : noise.drift_K),
-      drifts_(std::ranges::any_of(drift_K_, [](double each_K) { return each_K > 0.0; })),
+      drifts_(flux.drift_K > 0.0),
       size_(run.states + run.fluxes + (drifts_ ? run.sensors() : 0)),
       noise_K_(noise.noise_K) {
   const Eigen::Index rows = run.samples() * run.sensors();
@@ -53,8 +52,7 @@ Whitening::Whitening(const LinearisedRun& run, const LatentFlux& flux, const Sen
   for (std::size_t k = 0; k < run.duration_s.size(); ++k) {
     forget_ratio_[k] = std::exp(-run.duration_s[k] / flux.time_scale_s);
     if (drifts_) {
-      drift_forget_ratio_.push_back(
-          std::exp(-run.duration_s[k] / (noise.drift_K.empty() ? flux.drift_time_scale_s : noise.drift_time_scale_s)));
+      drift_forget_ratio_.push_back(std::exp(-run.duration_s[k] / flux.drift_time_scale_s));
     }
   }
   for_layout([&](const auto& layout) { build(layout, noise); });
@@ -158,8 +156,7 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
   if (drifts_) {
     const double of_drift = gained_ratio(drift_forget_ratio_);
     for (Eigen::Index sensor = 0; sensor < run_->sensors(); ++sensor) {
-      const double drift_K = drift_K_[static_cast<std::size_t>(sensor)];
-      covariance(drift_place(sensor), drift_place(sensor)) += of_drift * drift_K * drift_K;
+      covariance(drift_place(sensor), drift_place(sensor)) += of_drift * flux_.drift_K * flux_.drift_K;
     }
   }
 }

@@ -15,7 +15,7 @@
 namespace heatsoak::estimation {
 
 /// Unknown heat flux: stationary standard deviation per flux node, and correlation time. All sensors may also drift, which represents
-/// bodies that the network does not have; this drift is ignored if SensorNoise has its own.
+/// bodies that the network does not have.
 struct LatentFlux {
   std::vector<double> rms_W;
   double time_scale_s = 300.0;
@@ -26,9 +26,7 @@ struct LatentFlux {
 /// Sensor noise. The standard deviation of a sample is noise_K[sensor] / √weight.
 struct SensorNoise {
   std::vector<double> noise_K;
-  Eigen::VectorXd weight;            ///< n·s, 0 to 1; 0 excludes the sample; empty: all 1
-  std::vector<double> drift_K = {};  ///< per sensor: standard deviation of its drift; empty: that of LatentFlux
-  double drift_time_scale_s = 10.0;
+  Eigen::VectorXd weight;  ///< n·s, 0 to 1; 0 excludes the sample; empty: all 1
 };
 
 /// Innovations: deviation of each sample from its prediction by all earlier samples; NaN if not measured. Samples with weight 0 have one
@@ -91,7 +89,6 @@ class Whitening {
 
   const LinearisedRun* run_;
   LatentFlux flux_;
-  std::vector<double> drift_K_;
   bool drifts_ = false;
   Eigen::Index size_ = 0;                   ///< size of the filter's state: temperatures, fluxes, sensor drifts
   std::vector<double> forget_ratio_;        ///< per interval: autocorrelation of a flux

@@ -328,7 +328,7 @@ TEST(Profile, IsTheCurvatureWhereThatHoldsAndLopsidedWhereItDoesNot) {
   const Calibration& sharp = both.calibration;
   for (const int place : {0, 3}) {
     const auto [low, high] = profile_interval(sharp.motor_model.model, sharp.runs, sharp.fit, place);
-    const double sd = std::sqrt(sharp.fit.hypotheses.front().covariance(place, place));
+    const double sd = std::sqrt(sharp.fit.covariance_at_flux(place, place));
     EXPECT_NEAR((sharp.fit.theta[place] - low) / (1.96 * sd), 1.0, 0.05) << place;
     EXPECT_NEAR((high - sharp.fit.theta[place]) / (1.96 * sd), 1.0, 0.05) << place;
   }

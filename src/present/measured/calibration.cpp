@@ -91,8 +91,9 @@ std::string heat_words(const calibration::Calibration& result) {
                         base::significant(result.fit.flux.rms_W[0], 2), base::significant(result.fit.flux.rms_W[1], 2),
                         base::significant(result.fit.flux.time_scale_s, 1));
   }
-  if (result.fit.rejected_share > 0.0) {
-    words += fmt::format(" {} % of the samples were left out as outliers.", base::significant(100.0 * result.fit.rejected_share, 2));
+  if (result.fit.rejected_share(result.runs) > 0.0) {
+    words += fmt::format(" {} % of the samples were left out as outliers.",
+                         base::significant(100.0 * result.fit.rejected_share(result.runs), 2));
   }
   return words;
 }

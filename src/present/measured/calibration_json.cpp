@@ -89,7 +89,7 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
                 {{"winding_W", number(result.fit.flux.rms_W[0])},
                  {"stator_W", number(result.fit.flux.rms_W[1])},
                  {"time_scale_s", number(result.fit.flux.time_scale_s)}}},
-               {"rejected_share", number(result.fit.rejected_share)},
+               {"rejected_share", number(result.fit.rejected_share(result.runs))},
                {"not_identifiable", open},
                {"next_experiment", next_steps_words(answer)},
                {"worse_than_before", words_of(result.worse)},

@@ -57,9 +57,8 @@ std::string say(const calibration::UnmodelledHeat& of) {
 
 std::string say(const calibration::SensorDrift& of) {
   return fmt::format(
-      "the sensor at the {} seems to drift by {} K (standard deviation) over about {} s: either a sensor error or an error of the two-node "
-      "model",
-      of.node, base::significant(of.drift_K, 2), base::significant(of.time_scale_s, 1));
+      "the sensors seem to drift by {} K (standard deviation) over about {} s: either sensor errors or an error of the two-node model",
+      base::significant(of.drift_K, 2), base::significant(of.time_scale_s, 1));
 }
 
 std::string say(const calibration::WindingNotMeasured& /*of*/) {

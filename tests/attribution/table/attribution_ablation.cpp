@@ -199,7 +199,7 @@ std::vector<Group> groups() {
        true},
       {"Calibrated motors: false alarms, single effects; error",
        [] { return study_of(calibrated_motors()); },
-       {"better_share", "well_known_ratio", "suspect_sd", "material_share", "beyond_chance_ratio", "seen_share", "matters_K"}},
+       {"better_share", "well_known_ratio", "material_share", "seen_share", "matters_K"}},
       {"Motors with defects in the logs: false alarms, single effects; error",
        [] { return study_of(motors_with_spoilt_logs()); },
        {"wrong_rejection_share", "least_equal_count", "confirms_share", "most_rejected_share", "least_rows_count", "longest_pause_s",

@@ -39,7 +39,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
              "covered", "95 % of that", "median err", "90 % err", "rms z", "half width", "averaged");
   std::vector<double> seconds_s;
   for (std::size_t f = 0; f < results.front().marks.size(); ++f) {
-    // `averaged`: factor by which averaging over hypotheses widens the interval, compared with the most probable hypothesis.
+    // `averaged`: factor by which averaging over the unknown heat widens the interval, compared with the most probable one.
     std::vector<double> errors, widths, averaged;
     int covered = 0;
     double squares = 0.0;
@@ -52,8 +52,7 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
       squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
       const Eigen::VectorXd& exponents = each.calibration.motor_model.parameters[f].exponents;
       const estimation::Fit& fit = each.calibration.fit;
-      averaged.push_back(
-          std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.hypotheses.front().covariance * exponents)));
+      averaged.push_back(std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.covariance_at_flux * exponents)));
     }
     const auto [low, high] = bounds_of(covered, cases);
     std::ranges::sort(errors);
