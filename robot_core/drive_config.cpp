@@ -192,7 +192,6 @@ float most_ratio(const float (&coefficient)[kMostWheels], float least) {
     const float t_y = wheel.rolling_y_share;
     wheel.rim_per_speed_m = config.wheel_radius_m / wheel.slip_factor;
     wheel.speed_per_rim_per_m = wheel.slip_factor / config.wheel_radius_m;
-    wheel.per_damping_rad_per_V_s = 1.0F / wheel.damping_V_s_per_rad;
     find_sets(config, i);
     const float leverage =
         derived.plane_xx_factor * t_x * t_x + 2.0F * derived.plane_xy_factor * t_x * t_y + derived.plane_yy_factor * t_y * t_y;

@@ -52,9 +52,8 @@ struct WheelConfig {
   float phase_cosine_ratio = 1.0F;   ///< cos φ
   float phase_sine_ratio = 0.0F;
   // Filled in by complete().
-  float rim_per_speed_m = 0.0F;          ///< wheel radius divided by slip_factor
-  float speed_per_rim_per_m = 0.0F;      ///< reciprocal of rim_per_speed_m
-  float per_damping_rad_per_V_s = 0.0F;  ///< 1/d
+  float rim_per_speed_m = 0.0F;      ///< wheel radius divided by slip_factor
+  float speed_per_rim_per_m = 0.0F;  ///< reciprocal of rim_per_speed_m
   /// speed_per_rim_per_m/(1 − tᵀ·P·t): converts the rim speed's residual of the fit over all wheels into the difference between the wheel
   /// speed and the one that the other wheels imply. 0 if the other wheels do not determine this speed.
   float others_rad_per_m = 0.0F;

@@ -55,7 +55,6 @@ Origins wheel_origins(bool has_friction, const std::string& slip) {
       {"phase_sine_ratio", has_friction ? "sine of the phase" : "no friction"},
       {"rim_per_speed_m", "wheel_radius_m/slip_factor"},
       {"speed_per_rim_per_m", "slip_factor/wheel_radius_m"},
-      {"per_damping_rad_per_V_s", "1/damping_V_s_per_rad"},
       {"body_limit_A", "smaller one of current_limit_A and grip on level ground"},
   };
 }
