@@ -236,10 +236,12 @@ float find_demands(const Config& config, State& state, const Validated& validate
   const float of_battery = share_of_battery(config, state, validated, least * power_W);
   const float factor = least * of_battery;
   if (factor < 1.0F) {
+    // Wheel by wheel, a limited wheel leaves the others as they are.
+    const Reason shared = body.is_wheelwise ? Reason::none : Reason::other_wheel;
     for (int i = 0; i < config.wheel_count; ++i) {
       Reason& reason = limited.wheel[i].reason;
       demand[i].current_A *= body.is_wheelwise ? demand[i].share * of_battery : factor;
-      reason = of_battery < 1.0F ? Reason::battery_sag : reason == Reason::none ? Reason::other_wheel : reason;
+      reason = of_battery < 1.0F ? Reason::battery_sag : reason == Reason::none ? shared : reason;
     }
   }
   return factor;

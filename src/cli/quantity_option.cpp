@@ -23,6 +23,12 @@ std::function<std::string(const std::string&)> ends_in(const std::string& ending
   };
 }
 
+/// Returns a value at the end of a range that the conversion of its unit has rounded to beyond that end, such as 100us for 0.0001 s.
+double without_rounding(double value, const base::Range& range) {
+  const double rounded = base::parse_number(fmt::format("{:.12g}", value)).value_or(value);
+  return !range.contains(value) && range.contains(rounded) ? rounded : value;
+}
+
 template <class Value>
 CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& value, const base::ParameterSpec& spec) {
   const auto parse = [flag, spec, &value](const std::string& text) {
@@ -32,12 +38,13 @@ CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& valu
     if (!parsed.ok()) {
       throw CLI::ValidationError(flag, parsed.problem);
     }
-    if (!spec.range.contains(parsed.value)) {
+    const double given = without_rounding(parsed.value, spec.range);
+    if (!spec.range.contains(given)) {
       throw CLI::ValidationError(
           flag, fmt::format("{} is out of range; expected {}", bare && !spec.unit.empty() ? fmt::format("{} {}", text, spec.unit) : text,
                             base::to_string(spec.range, spec.unit)));
     }
-    value = parsed.value;
+    value = given;
   };
   return app.add_option_function<std::string>(flag, parse, std::string(spec.meaning))->type_name(std::string(spec.unit));
 }

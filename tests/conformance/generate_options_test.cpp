@@ -41,7 +41,7 @@ void expect_period_builds(const std::string& period) {
   make(folder, "firmware");
 }
 
-TEST(GenerateCorePeriod, ShortestCompilesForHostAndController) { expect_period_builds("0.1 ms"); }
+TEST(GenerateCorePeriod, ShortestCompilesForHostAndController) { expect_period_builds("100us"); }
 TEST(GenerateCorePeriod, LongestCompilesForHostAndController) { expect_period_builds("3.57 ms"); }
 
 TEST(GenerateCorePeriod, OneThatItsWatchdogCannotServeIsRefused) {

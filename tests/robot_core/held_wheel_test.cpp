@@ -98,5 +98,40 @@ TEST(HeldWheel, OvercurrentOpensItsOwnBridgeOnly) {
   }
 }
 
+/// One step from rest with commands for single wheels.
+Output first_step(robot_core::Mode mode, const std::array<float, 4>& wanted) {
+  const Config config = make_config(4);
+  State state;
+  robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F});
+  Random random(1);
+  Input input = Plant(config, {}).sense(random, 0.0F, true);
+  input.command.mode = mode;
+  std::ranges::copy(wanted, input.command.wheel_speed_rad_per_s);
+  std::ranges::copy(wanted, input.command.wheel_torque_Nm);
+  return robot_core::step(config, state, input);
+}
+
+// These modes command no direction of travel that a common factor could keep.
+TEST(LimitedWheel, LeavesTheOthersAsTheyAreWhereEachHasItsOwnCommand) {
+  struct Case {
+    robot_core::Mode mode;
+    float much, little;
+  };
+  for (const auto& [mode, much, little] :
+       {Case{robot_core::Mode::wheel_torque, 2.0F, 0.04F}, Case{robot_core::Mode::wheel_speed, 150.0F, 3.0F}}) {
+    for (std::size_t limited = 0; limited < 4; ++limited) {
+      std::array<float, 4> wanted{little, -little, 0.5F * little, little};
+      const Output alone = first_step(mode, wanted);
+      wanted.at(limited) = much;
+      const Output out = first_step(mode, wanted);
+      EXPECT_EQ(out.reason[limited], Reason::driver_current);
+      for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(alone.reason[i], Reason::none);
+        EXPECT_TRUE(i == limited || (out.reason[i] == Reason::none && out.voltage_V[i] == alone.voltage_V[i])) << limited << ' ' << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak::test_robot
