@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -37,6 +38,13 @@ std::string quotient(const std::string& above, const std::string& below) {
   }
   const bool is_product = below.find(' ') != std::string::npos;
   return fmt::format("{}/{}{}{}", above.empty() ? "1" : above, is_product ? "(" : "", below, is_product ? ")" : "");
+}
+
+/// Returns whether text uses this symbol as a unit.
+bool is_symbol(std::string_view word) {
+  constexpr std::array<std::string_view, 4> kInTextOnly{"Ah", "B", "Wh", "nats"};
+  const auto* const known = std::ranges::find(kUnitWords, word, &UnitWord::word);
+  return (known != kUnitWords.end() && !known->unit.empty()) || std::ranges::find(kInTextOnly, word) != kInTextOnly.end();
 }
 
 }  // namespace
@@ -78,6 +86,21 @@ std::optional<UnitOfName> unit_of_name(std::string_view name) {
   result.quantity = rest;
   result.unit = quotient(current.unit, below);
   return result;
+}
+
+bool is_number_with_unit(std::string_view before, std::string_view behind) {
+  if (before.empty() || std::isdigit(static_cast<unsigned char>(before.back())) == 0) {
+    return false;
+  }
+  constexpr std::array<std::string_view, 4> kSigns{"%", "°", "Ω", "µ"};
+  if (std::ranges::any_of(kSigns, [behind](std::string_view sign) { return behind.starts_with(sign); })) {
+    return true;
+  }
+  const auto end = std::ranges::find_if(behind, [](unsigned char c) { return std::isalpha(c) == 0; });
+  const std::string_view word(behind.begin(), end);  // the first one of a quotient or product
+  constexpr std::string_view kPrefixes = "GMkmunp";
+  const bool has_prefix = word.size() > 1 && kPrefixes.find(word.front()) != std::string_view::npos;
+  return is_symbol(word) || (has_prefix && is_symbol(word.substr(1)));
 }
 
 }  // namespace heatsoak::base

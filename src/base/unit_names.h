@@ -70,8 +70,12 @@ struct UnitOfName {
   SiUnit si;                  ///< with an offset only if the unit is one word
 };
 
-/// Returns the unit in which a name ends; nothing if it ends in none. Each word behind "per" divides up to the next "per". The first word is
-/// the quantity ("a_V" is in V), unless a pure number is all of the name: "share".
+/// Returns the unit in which a name ends; nothing if it ends in none. Each word behind "per" divides up to the next "per". The first word
+/// is the quantity ("a_V" is in V), unless a pure number is all of the name: "share".
 std::optional<UnitOfName> unit_of_name(std::string_view name);
+
+/// Returns whether text with a blank between `before` and `behind` has a number there with its unit: "20" and "K", "3.5" and "m/s², …".
+/// Such a blank is no place for a line break.
+bool is_number_with_unit(std::string_view before, std::string_view behind);
 
 }  // namespace heatsoak::base

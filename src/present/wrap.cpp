@@ -2,7 +2,21 @@
 
 #include <algorithm>
 
+#include "base/unit_names.h"
+
 namespace heatsoak::present {
+namespace {
+
+/// Returns the length of the first word; a number and its unit are one.
+std::size_t first_word(std::string_view text) {
+  std::size_t end = text.find(' ');
+  while (end != std::string_view::npos && base::is_number_with_unit(text.substr(0, end), text.substr(end + 1))) {
+    end = text.find(' ', end + 1);
+  }
+  return std::min(end, text.size());
+}
+
+}  // namespace
 
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -26,7 +40,7 @@ std::string wrapped(std::string_view text, std::string_view first, std::size_t w
   std::string line(first);
   bool is_begin = true;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::size_t end = first_word(text);
     const std::string_view word = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (!is_begin && width_of(line) + 1 + width_of(word) > width) {

@@ -16,8 +16,8 @@ std::string_view leading(std::string_view text, std::size_t count);
 /// Returns the last `count` characters.
 std::string_view trailing(std::string_view text, std::size_t count);
 
-/// Breaks `text` at blanks into lines of at most `width` characters; a longer word gets a line of its own. The first line starts with
-/// `first`, the others with as many blanks. No line break at the end.
+/// Breaks `text` at blanks into lines of at most `width` characters; a longer word gets a line of its own, and a number stays with its
+/// unit. The first line starts with `first`, the others with as many blanks. No line break at the end.
 std::string wrapped(std::string_view text, std::string_view first, std::size_t width);
 
 /// Breaks the lines that are longer than `width`; the continuation is indented like its line.

@@ -40,17 +40,28 @@ TEST(UnitOfName, HasTheSizeOfItsText) {
     if (each.unit.empty() || each.word == "byte" || each.word == "deg") {
       continue;
     }
-    for (const std::string& name : {fmt::format("x_{}", each.word), fmt::format("x_per_{}", each.word), fmt::format("x_A_{}_per_s", each.word)}) {
+    for (const std::string& name :
+         {fmt::format("x_{}", each.word), fmt::format("x_per_{}", each.word), fmt::format("x_A_{}_per_s", each.word)}) {
       const UnitOfName found = *unit_of_name(name);
       const SiUnit& si = found.si;
-      const std::string text =
-          fmt::format("kg{} m{} s{} A{} K{} rad{}", si.kg, si.m, si.s, si.A, si.K, si.rad);
+      const std::string text = fmt::format("kg{} m{} s{} A{} K{} rad{}", si.kg, si.m, si.s, si.A, si.K, si.rad);
       const double zero = convert(0.0, found.unit, text);
       const double one = convert(1.0, found.unit, text);
       EXPECT_NEAR((one - zero) / si.factor, 1.0, 1e-12) << name << " = " << found.unit << " = " << text;
       EXPECT_NEAR(zero, si.offset_K, 1e-9) << name;
     }
   }
+}
+
+TEST(NumberWithUnit, IsADigitBeforeAUnit) {
+  for (const char* const behind : {"K", "°C,", "%", "m/s² and", "rad/s", "kW", "mΩ", "µs", "nats.", "min)", "N·m"}) {
+    EXPECT_TRUE(is_number_with_unit("at 20", behind)) << behind;
+  }
+  for (const char* const behind : {"motors", "and", "mean", "(K)", "", "up", "share"}) {
+    EXPECT_FALSE(is_number_with_unit("at 20", behind)) << behind;
+  }
+  EXPECT_FALSE(is_number_with_unit("in", "K"));
+  EXPECT_FALSE(is_number_with_unit("", "K"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "exported_motor.h"
 #include "support/skip_reasons.h"
@@ -131,6 +132,13 @@ TEST_P(CleanHeader, KeepsMisraRulesButTheNamedAdvisoryOnes) {
       EXPECT_EQ(line.find(": error"), std::string::npos) << line;
       EXPECT_FALSE(line.starts_with("guard.h")) << line;  // findings of style
     }
+  }
+}
+
+TEST(HeaderText, KeepsANumberWithItsUnit) {
+  for (std::size_t before = 120; before < 140; ++before) {
+    const std::string text = "/*\n * " + std::string(before - 3, 'x') + " 20 K and more of it\n */\n";
+    EXPECT_THAT(c_header::wrapped(text), testing::HasSubstr("20 K")) << before;
   }
 }
 

@@ -215,6 +215,13 @@ TEST(Wrap, breaks_between_words_and_keeps_long_ones) {
   EXPECT_EQ(leading("°C…x", 3), "°C…");
 }
 
+TEST(Wrap, keeps_a_number_with_its_unit) {
+  EXPECT_EQ(wrapped("by 20 K", "", 5), "by\n20 K");
+  EXPECT_EQ(wrapped("at 3.5 m/s², then", "", 9), "at\n3.5 m/s²,\nthen");
+  EXPECT_EQ(folded("over 10 min at 25 °C", 8), "over\n10 min\nat 25 °C");
+  EXPECT_EQ(wrapped("all 20 kelvins", "", 6), "all 20\nkelvins");
+}
+
 TEST(Markdown, has_every_column_and_note_and_escapes_its_own_signs) {
   Document document = example();
   document.tables[0].rows[0][1].words = "a|b_c";

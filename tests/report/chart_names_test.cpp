@@ -38,6 +38,16 @@ TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
   EXPECT_GT(name->number("y"), last->number("y") + 12.0);
 }
 
+TEST_F(ChartTest, NoLineBreaksBetweenANumberAndItsUnit) {
+  Chart chart = warm_up();
+  for (int i = 0; i < 40; ++i) {
+    chart.title += " 20 K";
+  }
+  for (const Element& each : drawn(chart)) {
+    EXPECT_FALSE(each.name == "text" && (each.text.ends_with(" 20") || each.text.starts_with("K "))) << each.text;
+  }
+}
+
 /// On/off load with a period of 10 s over 40 min: a warm-up with a ripple of 40 K.
 Chart rippled_warm_up() {
   Chart chart = warm_up();

@@ -8,6 +8,8 @@
 #include <limits>
 #include <span>
 
+#include "base/unit_names.h"
+
 namespace heatsoak::derate::c_header {
 
 namespace {
@@ -21,7 +23,10 @@ constexpr std::size_t kLongestLine = 140;
 
 /// Returns the last place where a comment line may be broken, the beginning of the rest; npos if there is none after `first`.
 std::size_t break_of_comment(std::string_view line, std::size_t first) {
-  const std::size_t last = line.rfind(' ', kLongestLine);
+  std::size_t last = line.rfind(' ', kLongestLine);
+  while (last != std::string_view::npos && last > first && base::is_number_with_unit(line.substr(0, last), line.substr(last + 1))) {
+    last = line.rfind(' ', last - 1);
+  }
   return last == std::string_view::npos || last <= first ? std::string_view::npos : last + 1;
 }
 

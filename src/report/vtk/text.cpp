@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "base/unit_names.h"
+
 namespace heatsoak::report {
 namespace {
 
@@ -85,7 +87,9 @@ std::vector<std::string> wrapped(const std::string& text, const TextStyle& style
       after_space = 0;
     }
     line += character;
-    after_space = character == " " ? line.size() : after_space;
+    const bool is_place =
+        character == " " && !base::is_number_with_unit(std::string_view(text).substr(0, at - 1), std::string_view(text).substr(at));
+    after_space = is_place ? line.size() : after_space;
     after_underscore = character == "_" ? line.size() : after_underscore;
   }
   trim_end(line);
