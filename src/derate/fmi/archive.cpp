@@ -32,6 +32,8 @@ std::string zip_archive(const std::vector<FmuFile>& files) {
   std::string bytes;
   const std::unique_ptr<archive, int (*)(archive*)> zip(archive_write_new(), &archive_write_free);
   require(zip.get(), archive_write_set_format_zip(zip.get()));
+  // Without this libarchive fills the last block with zeros, up to 10240 bytes.
+  require(zip.get(), archive_write_set_bytes_in_last_block(zip.get(), 1));
   require(zip.get(), archive_write_open(zip.get(), &bytes, nullptr, &take, nullptr));
   for (const FmuFile& file : files) {
     const std::unique_ptr<archive_entry, void (*)(archive_entry*)> entry(archive_entry_new(), &archive_entry_free);
