@@ -5,10 +5,9 @@
 #include <algorithm>
 
 namespace heatsoak::present {
-namespace {
 
-/// States the jerk limit whose drives settle first, for the robot's own acceleration, which comes first.
-Text headline(const std::vector<simulate::StudyResult>& results) {
+std::string settling_words(const simulate::JerkSweep& sweep) {
+  const std::vector<simulate::StudyResult>& results = sweep.results;
   const double own_m_per_s2 = results.front().limits.acceleration_m_per_s2;
   const simulate::StudyResult* best = &results.front();
   for (const simulate::StudyResult& each : results) {
@@ -16,17 +15,14 @@ Text headline(const std::vector<simulate::StudyResult>& results) {
       best = &each;
     }
   }
-  return {fmt::format("With an acceleration of {:.1f} m/s² the drives settle first, after {:.2f} s, with {}.", own_m_per_s2,
-                      best->settled_s,
-                      best->is_bang_bang() ? "bang-bang" : fmt::format("a jerk limit of {:.1f} m/s³", best->limits.jerk_m_per_s3))};
+  return fmt::format("with an acceleration of {:.1f} m/s² the drives settle first, after {:.2f} s, with {}", own_m_per_s2, best->settled_s,
+                     best->is_bang_bang() ? "bang-bang" : fmt::format("a jerk limit of {:.1f} m/s³", best->limits.jerk_m_per_s3));
 }
-
-}  // namespace
 
 Document jerk_sweep_document(const simulate::JerkSweep& sweep) {
   const double grip = simulate::grip_m_per_s2(sweep.robot);
   Document document{
-      .headline = {headline(sweep.results)},
+      .headline = {{fmt::format("{}: {}.", sweep.robot.name, settling_words(sweep))}},
       .paragraphs = {fmt::format("{} on {}: simulated drives of 0.5, 1 and 2 m in eight directions, from rest to rest; means.",
                                  sweep.motor.id, sweep.robot.id)}};
   Table table{.columns = {{"acceleration", "m/s²", 0},

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "present/jerk_sweep.h"
+
 namespace heatsoak::present {
 namespace {
 
@@ -47,7 +49,7 @@ report::Chart jerk_sweep_chart(const simulate::JerkSweep& sweep) {
                               {"Distance between plan and robot", "distance / mm rms", 1e3, &simulate::StudyResult::tracking_rms_m, true},
                               {"Copper heat of all motors", "heat / J per drive", 1.0, &simulate::StudyResult::copper_J}};
   report::Chart chart{
-      .title = fmt::format("{}: jerk limit against bang-bang", sweep.robot.name),
+      .title = fmt::format("{}: {}", sweep.robot.name, settling_words(sweep)),
       .subtitle = fmt::format("{}; simulated drives of 0.5, 1 and 2 m in eight directions, means; dashed: bang-bang, same acceleration",
                               sweep.motor.id),
       .x_label = "jerk limit / (m/s³)",

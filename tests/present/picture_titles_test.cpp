@@ -2,10 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <tuple>
+
+#include "present/jerk_sweep_chart.h"
 #include "present/measured/calibration_chart.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/prediction_chart.h"
+#include "support/shipped.h"
 
 namespace heatsoak::present {
 namespace {
@@ -67,6 +72,24 @@ TEST(Titles, ADiagnosisStatesItsVerdict) {
   EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("heat is missing that no effect"));
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::nothing_missing;
   EXPECT_EQ(verdict_words(answer.diagnosis), "no effect is missing");
+}
+
+TEST(Titles, AJerkSweepStatesTheLimitThatSettlesFirst) {
+  simulate::JerkSweep sweep{.robot = twente(), .motor = ecx_32(), .results = {}};
+  for (const auto& [acceleration_m_per_s2, jerk_m_per_s3, settled_s] : {std::tuple(3.0, 5.0, 1.4),
+                                                                        {3.0, 20.0, 1.2},
+                                                                        {3.0, std::numeric_limits<double>::infinity(), 1.3},
+                                                                        {6.0, 60.0, 0.9},
+                                                                        {6.0, std::numeric_limits<double>::infinity(), 0.8}}) {
+    simulate::StudyResult result;
+    result.limits = {acceleration_m_per_s2, jerk_m_per_s3};
+    result.settled_s = settled_s;
+    sweep.results.push_back(result);
+  }
+  EXPECT_EQ(jerk_sweep_chart(sweep).title,
+            sweep.robot.name +
+                ": with an acceleration of 3.0 m/s² the drives settle first, after 1.20 s, with a jerk limit "
+                "of 20.0 m/s³");
 }
 
 }  // namespace
