@@ -69,7 +69,9 @@ CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& me
 }
 
 CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning) {
-  return app.add_option("--out", file, meaning)->check(ends_in(".csv", "tables are written as CSV"))->type_name("FILE.csv");
+  return app.add_option("--out", file, meaning)
+      ->check(ends_in(std::string(kTableEnding), "tables are written as CSV"))
+      ->type_name(fmt::format("FILE{}", kTableEnding));
 }
 
 CLI::Option* add_seed(CLI::App& app, std::uint64_t& seed, const std::string& meaning) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/parameter.h"
 
@@ -25,6 +26,8 @@ CLI::Option* add_seed(CLI::App& app, std::uint64_t& seed, const std::string& mea
 
 /// Adds --plot with FILE.svg or FILE.png; another extension is a usage error.
 CLI::Option* add_picture(CLI::App& app, std::string& file, const std::string& meaning);
+
+inline constexpr std::string_view kTableEnding = ".csv";
 
 /// Adds --out FILE.csv; another extension is a usage error.
 CLI::Option* add_table(CLI::App& app, std::string& file, const std::string& meaning);

@@ -53,7 +53,6 @@ Rows formats(const input::DataFolders& /*folders*/) {
                     fmt::format("answer: {}{}", renderer.summary,
                                 renderer.file_ending.empty() ? "" : fmt::format("; --report FILE{}", renderer.file_ending))});
   }
-  rows.push_back({"csv", "trace: simulate --out FILE.csv"});
   return rows;
 }
 
@@ -85,7 +84,7 @@ std::vector<std::string> listed_kinds() {
   return names;
 }
 
-Document list_document(const std::string& kind, const input::DataFolders& folders) {
+Document list_document(const std::string& kind, const input::DataFolders& folders, std::span<const TableOutput> tables) {
   const auto found = std::ranges::find(kinds(), kind, &ListedKind::name);
   if (found == kinds().end()) {
     throw base::Failure(base::ExitCode::bad_input,
@@ -100,7 +99,11 @@ Document list_document(const std::string& kind, const input::DataFolders& folder
   }
   Table table = labelled_table("");
   Json items = Json::array();
-  for (const NamedThing& each : found->rows(folders)) {
+  Rows rows = found->rows(folders);
+  for (const TableOutput& each : found->rows == formats ? tables : std::span<const TableOutput>()) {
+    rows.push_back({each.ending.substr(1), fmt::format("{}; {} FILE{}", each.content, each.command, each.ending)});
+  }
+  for (const NamedThing& each : rows) {
     table.rows.push_back({{each.id}, {each.summary}});
     items.push_back({{"id", each.id}, {"summary", each.summary}});
   }

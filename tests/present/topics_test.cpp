@@ -83,6 +83,14 @@ TEST(List, FormatsAreThoseOfTheProgram) {
 }
 
 TEST(List, AFolderWithoutFilesIsAnError) {
+TEST(List, TablesOfVerbsAreFormats) {
+  const std::vector<TableOutput> tables{{".csv", "table of every signal", "simulate --out"}};
+  const Json items = list_document("formats", kFolders, tables).data.at("items");
+  EXPECT_EQ(items.back().at("id"), "csv");
+  EXPECT_EQ(items.back().at("summary"), "table of every signal; simulate --out FILE.csv");
+  EXPECT_FALSE(ids_of(list_document("motors", kFolders, tables)).contains("csv"));
+}
+
   input::DataFolders some = kFolders;
   some.robots = kSource / "src";  // it has no .toml file
   EXPECT_NO_THROW(static_cast<void>(list_document("motors", some)));

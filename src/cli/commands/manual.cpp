@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/help_page.h"
+#include "present/written_files.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -25,8 +26,7 @@ base::ExitCode run(const ManualOptions& options, const CLI::App& program, Sessio
     session.write(folder / (is_man ? fmt::format("heatsoak-{}.1", page.verb) : page.verb + ".md"),
                   is_man ? man_page_of(page) : markdown_of(page));
   }
-  session.show(present::short_answer(fmt::format("{} in {}", base::counted(pages.size() + 1, "page"), folder.string()),
-                                     {{"schema", "heatsoak.manual/1"}, {"pages", pages.size() + 1}, {"folder", folder.string()}}));
+  session.show(present::manual_document(pages.size() + 1, folder));
   return base::ExitCode::done;
 }
 

@@ -1,5 +1,4 @@
 #include <embedded/file_templates.h>
-#include <fmt/format.h>
 
 #include <CLI/App.hpp>
 #include <algorithm>
@@ -7,8 +6,7 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "present/document.h"
-#include "present/shell_word.h"
+#include "present/written_files.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -27,9 +25,7 @@ base::ExitCode run(const NewOptions& options, Session& session) {
   const auto found =
       std::ranges::find_if(texts, [&](const embedded::Text& each) { return each.path.ends_with("/" + options.kind + ".toml"); });
   session.write(options.file, std::string(found->text));
-  session.show(present::short_answer(
-      fmt::format("{}: replace every \"?\", then run `heatsoak lint {}`", options.file, present::shell_word(options.file)),
-      {{"schema", "heatsoak.new/1"}, {"kind", options.kind}, {"file", options.file}}));
+  session.show(present::new_file_document(options.kind, options.file));
   return base::ExitCode::done;
 }
 
