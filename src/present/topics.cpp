@@ -144,9 +144,11 @@ Document description_of(const std::string& name, const input::DataFolders& folde
   }
   std::vector<std::string> known;
   std::ranges::transform(topics, std::back_inserter(known), &Topic::id);
-  throw base::Failure(base::ExitCode::bad_input,
-                      fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{}", name,
-                                  base::did_you_mean(name, known)));
+  throw base::Failure(
+      base::ExitCode::bad_input,
+      fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{} (`heatsoak list "
+                  "topics` shows the names)",
+                  name, base::did_you_mean(name, known)));
 }
 
 }  // namespace heatsoak::present

@@ -53,6 +53,7 @@ TEST(Topics, AMisspeltNameIsAnsweredWithASimilarOne) {
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
     EXPECT_THAT(failure.what(), HasSubstr("did you mean 'windage'"));
+    EXPECT_THAT(failure.what(), HasSubstr("`heatsoak list topics` shows the names"));
   }
 }
 
@@ -82,7 +83,6 @@ TEST(List, FormatsAreThoseOfTheProgram) {
   }
 }
 
-TEST(List, AFolderWithoutFilesIsAnError) {
 TEST(List, TablesOfVerbsAreFormats) {
   const std::vector<TableOutput> tables{{".csv", "table of every signal", "simulate --out"}};
   const Json items = list_document("formats", kFolders, tables).data.at("items");
@@ -91,6 +91,7 @@ TEST(List, TablesOfVerbsAreFormats) {
   EXPECT_FALSE(ids_of(list_document("motors", kFolders, tables)).contains("csv"));
 }
 
+TEST(List, AFolderWithoutFilesIsAnError) {
   input::DataFolders some = kFolders;
   some.robots = kSource / "src";  // it has no .toml file
   EXPECT_NO_THROW(static_cast<void>(list_document("motors", some)));
