@@ -50,6 +50,11 @@ struct VoltageFallsWithSpeed {};
 struct DampingDiffersFromBackEmf {
   double ratio = 0.0;  ///< median of damping / back-EMF; 1 to 2 is usual
 };
+/// The log has values of more wheels than the robot.
+struct MoreWheelsThanRobot {
+  std::size_t logged = 0;    ///< largest number of a wheel in the log
+  std::size_t of_robot = 0;  ///< number of wheels in the robot's file
+};
 /// A wheel turns with hardly any voltage.
 struct WheelWithoutVoltage {
   std::size_t wheel = 0;
@@ -75,9 +80,9 @@ struct WheelDampingDiffers {
   double ratio = 0.0;  ///< damping / back-EMF; 1 to 2 is usual
 };
 /// Probable wrong unit, sign or order of wheels.
-using FrictionSuspicion =
-    std::variant<recording::Suspicion, DirectionDiffers, SpeedsContradict, VoltageFallsWithSpeed, DampingDiffersFromBackEmf,
-                 WheelWithoutVoltage, WheelVoltageFallsWithSpeed, FrictionDrivesWheel, WheelVoltageUnexplained, WheelDampingDiffers>;
+using FrictionSuspicion = std::variant<recording::Suspicion, DirectionDiffers, SpeedsContradict, VoltageFallsWithSpeed,
+                                       DampingDiffersFromBackEmf, MoreWheelsThanRobot, WheelWithoutVoltage, WheelVoltageFallsWithSpeed,
+                                       FrictionDrivesWheel, WheelVoltageUnexplained, WheelDampingDiffers>;
 /// Suspicion about one log of a test, or about the test.
 struct SuspicionOfTest {
   std::string log;  ///< name of the recording; empty: the fit to all logs

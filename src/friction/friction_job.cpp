@@ -53,13 +53,19 @@ recording::Recording read_log(const FrictionJob& job, const std::string& name, r
   return recording::read_recording(file, recording::mapping_for(file, job.map), report);
 }
 
-void assess(const recording::Recording& recording, const recording::RecordingReport& report, FrictionInput& input, FrictionRun& run) {
+void assess(const recording::Recording& recording, const recording::RecordingReport& report, const FrictionJob& job, FrictionInput& input,
+            FrictionRun& run) {
   const recording::DataQuality quality = recording::assess(recording, report);
   for (const recording::Suspicion& suspicion : quality.suspicions) {
     run.suspicions.push_back({recording.name, suspicion});
   }
   for (const recording::Suspicion& suspicion : quality.blocking_for_wheels) {
     input.blocking.push_back({recording.file.string(), suspicion});
+  }
+  const std::size_t wheels = job.robot.wheels.axis_rad.size();
+  if (const std::size_t logged = last_wheel(recording); logged > wheels) {
+    run.suspicions.push_back({recording.name, MoreWheelsThanRobot{logged, wheels}});
+    input.blocking.push_back({recording.file.string(), MoreWheelsThanRobot{logged, wheels}});
   }
 }
 
@@ -75,7 +81,7 @@ FrictionInput read_logs(const FrictionJob& job, FrictionLogNeeds needs, Friction
     recording::RecordingReport report;
     std::optional<recording::Recording> recording = failures.attempt([&] { return read_log(job, job.logs[i], report); });
     if (recording) {
-      assess(*recording, report, input, run);
+      assess(*recording, report, job, input, run);
       failures.attempt([&] { input.logs.push_back(friction_log(*recording, job.robot, needs, run.findings)); });
       read.emplace_back(recording::RowsGivenTwice::Rows(*recording), recording->content);
     }

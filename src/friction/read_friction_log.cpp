@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "base/unknown.h"
@@ -203,6 +204,23 @@ class ColumnsOfRobot {
 FrictionLog friction_log(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
                          FrictionFindings& findings) {
   return ColumnsOfRobot(recording, robot, needs, findings).log();
+}
+
+std::size_t last_wheel(const recording::Recording& recording) {
+  std::size_t last = 0;
+  for (const recording::Channel& channel : recording.channels) {
+    const std::string_view key = channel.quantity.key;
+    for (const std::string_view stem : {"wheel_speed_rad_per_s_", "wheel_voltage_V_", "wheel_modulation_ratio_", "wheel_current_A_"}) {
+      std::size_t wheel = 0;
+      if (key.starts_with(stem)) {
+        std::from_chars(key.data() + stem.size(), key.data() + key.size(), wheel);
+      }
+      if (wheel > last && std::ranges::any_of(channel.values, [](double each) { return std::abs(each) > 0.0; })) {
+        last = wheel;
+      }
+    }
+  }
+  return last;
 }
 
 }  // namespace heatsoak::friction

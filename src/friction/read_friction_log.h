@@ -1,6 +1,7 @@
 // Converts a recording to the columns that the friction test needs.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "friction/findings.h"
@@ -32,5 +33,8 @@ struct FrictionLogNeeds {
 /// `findings` how it read the columns.
 FrictionLog friction_log(const recording::Recording& recording, const robot::Robot& robot, const FrictionLogNeeds& needs,
                          FrictionFindings& findings);
+
+/// Returns the largest number of a wheel whose speed, voltage, modulation or current is not always 0 or blank; 0 if there is none.
+std::size_t last_wheel(const recording::Recording& recording);
 
 }  // namespace heatsoak::friction

@@ -88,6 +88,32 @@ TEST(Friction, of_one_roll_out_has_no_intervals_and_is_not_called_given) {
   }
 }
 
+// The wheels of another robot have other angles, so every value would be wrong.
+TEST(Friction, refuses_a_log_with_more_wheels_than_the_robot) {
+  const TemporaryFolder folder;
+  const std::string log = (folder.path() / "three.csv").string();
+  const Words command{"friction", "--robot", (kSource / "tests/data/robots/festo_robotino.toml").string(), log};
+  for (const bool is_turning : {true, false}) {
+    std::string text = "time_s,heading_rad,battery_V";
+    for (int wheel = 1; wheel <= 4; ++wheel) {
+      text += fmt::format(",wheel_speed_rad_per_s_{0},wheel_pwm_ratio_{0}", wheel);
+    }
+    for (int row = 0; row < 100; ++row) {
+      text += fmt::format("\n{:.2f},0,24,10,0.1,-5,0.1,-5,0.1,{},0", 0.01 * row, is_turning ? "3" : "0");
+    }
+    write(log, text + "\n");
+    const ProgramRun done = run(command);
+    const auto said = HasSubstr("three.csv: error: the log has values of wheel 4, but the robot's file has 3 wheels");
+    if (is_turning) {
+      EXPECT_EQ(done.exit_code, 2);
+      EXPECT_THAT(done.err, AllOf(said, HasSubstr("--as-is")));
+      EXPECT_THAT(run(command + Words{"--as-is"}).err, Not(said));
+    } else {
+      EXPECT_THAT(done.err, Not(HasSubstr("wheel 4"))) << "a logger with a fixed number of columns";
+    }
+  }
+}
+
 /// The example with an additional 1.5 V sin 2θ at wheel 2. Columns are time, battery, heading on the field, yaw, then speed and modulation.
 TEST(Json, of_friction_says_where_its_law_does_not_hold) {
   std::istringstream log(content_of(kFrictionLog));

@@ -416,6 +416,7 @@ TEST(WordsOfFriction, Suspicions) {
 TEST(WordsOfFriction, ProblemsOfWheels) {
   using enum friction::WheelProblem;
   EXPECT_EQ(words_of(hardly_turns), "it hardly turns in any steady leg");
+      {MoreWheelsThanRobot{4, 3}, "the log has values of wheel 4, but the robot's file has 3 wheels: is it the log of another robot?"},
   EXPECT_EQ(words_of(constant_voltage), "its voltage is the same in all legs");
   EXPECT_THAT(words_of(one_speed), HasSubstr("drive at two speeds or more"));
   EXPECT_THAT(words_of(too_few_headings), HasSubstr("drive at least six directions all around"));

@@ -77,6 +77,11 @@ std::string say(const friction::DampingDiffersFromBackEmf& of) {
       base::significant(of.ratio, 2));
 }
 
+std::string say(const friction::MoreWheelsThanRobot& of) {
+  return fmt::format("the log has values of wheel {}, but the robot's file has {} wheels: is it the log of another robot?", of.logged,
+                     of.of_robot);
+}
+
 std::string say(const friction::WheelWithoutVoltage& of) {
   return fmt::format("wheel {} turns with hardly any voltage: is its modulation missing from the log?", of.wheel);
 }
