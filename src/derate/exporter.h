@@ -12,6 +12,7 @@ namespace heatsoak::derate {
 struct ExporterType {
   std::string_view name;  ///< the file's name; set by all_exporters()
   std::string_view summary;
+  std::string_view file_ending = {};  ///< ending of a file name that selects this format; empty if none does
   std::string (*write)(const Derating& derating) = nullptr;
   /// Writes the format with a binary built by the named C compiler; null if the format contains no binary.
   std::string (*write_compiled)(const Derating& derating, const std::string& compiler) = nullptr;

@@ -43,7 +43,9 @@ Rows formats(const input::DataFolders& /*folders*/) {
     rows.push_back({std::string(log.name), fmt::format("recorded game: {}; duty --import LOG", log.summary)});
   }
   for (const derate::ExporterType& exporter : derate::all_exporters()) {
-    rows.push_back({std::string(exporter.name), fmt::format("derating: {}; derate --to {}", exporter.summary, exporter.name)});
+    rows.push_back({std::string(exporter.name),
+                    fmt::format("derating: {}; derate --to {}{}", exporter.summary, exporter.name,
+                                exporter.file_ending.empty() ? "" : fmt::format(" or --out FILE{}", exporter.file_ending))});
   }
   for (const std::string_view ending : report::kPictureEndings) {
     rows.push_back({std::string(ending.substr(1)), fmt::format("picture: --plot FILE{}", ending)});

@@ -106,6 +106,23 @@ TEST(DerateForms, LeaveNothingWhereTheTargetCannotBeWritten) {
   }
 }
 
+TEST(DerateForms, FollowTheEndingOfTheFile) {
+  const TemporaryFolder folder;
+  RunOptions here;
+  here.folder = folder.path();
+  const Words motor{"--motor", "maxon_ecx_flat_42m_24v"};
+  for (const auto& [out, begin] : {std::pair("a.json", "{"), {"a.csv", "# "}, {"a.h", "/*"}, {"plain", "/*"}}) {
+    ASSERT_EQ(run(kDerate + motor + Words{"--out", out}, here).exit_code, 0) << out;
+    EXPECT_THAT(content_of(folder.path() / out), testing::StartsWith(begin)) << out;
+  }
+  ASSERT_EQ(run(kDerate + motor + Words{"--to", "csv", "--out", "b.json"}, here).exit_code, 0);
+  EXPECT_THAT(content_of(folder.path() / "b.json"), testing::StartsWith("# "));
+  const ProgramRun refused = run(kDerate + motor + Words{"--out", "a.fmu"}, here);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("--out a.fmu: its ending gives no format; expected .h, .csv, .json, or --to FORM"),
+                                 HasSubstr("heatsoak list formats")));
+}
+
 TEST(DerateForms, CompilerIsForUnitsOnly) {
   const TemporaryFolder folder;
   RunOptions here;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ namespace {
 struct DerateOptions {
   GuardOptions guard;
   std::string robot;
-  std::string to = "c_header";
+  std::string to;  ///< empty: given by the ending of `out`
   std::string out;
   std::string committed;  ///< file of --check
   std::string compiler;   ///< C compiler for the binary of an FMU; empty: the FMU contains only sources
@@ -41,7 +42,25 @@ const derate::ExporterType& exporter_named(const std::string& name) {
 }
 
 base::ExitCode run(const DerateOptions& options, Session& session) {
-  const derate::ExporterType& exporter = exporter_named(options.to);
+/// Returns the format of --to or else that of the ending of --out. A name without an ending, or no name, gets a C header.
+const derate::ExporterType& exporter_of(const DerateOptions& options) {
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  if (!options.to.empty() || ending.empty()) {
+    return exporter_named(options.to.empty() ? "c_header" : options.to);
+  }
+  std::string expected;
+  for (const derate::ExporterType& each : derate::all_exporters()) {
+    if (each.file_ending == ending) {
+      return each;
+    }
+    expected += each.file_ending.empty() ? "" : fmt::format("{}{}", expected.empty() ? "" : ", ", each.file_ending);
+  }
+  throw base::Failure(base::ExitCode::bad_input,
+                      fmt::format("--out {}: its ending gives no format; expected {}, or --to FORM (`heatsoak list formats` shows them)",
+                                  options.out, expected));
+}
+
+  const derate::ExporterType& exporter = exporter_of(options);
   derate::DerateOptions derate_options = options.guard.derate;
   derate_options.sensor = sensor_options(options.sensor);
   if (derate_options.sensor && exporter.name != "c_header" && exporter.name != "json") {
@@ -81,31 +100,33 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
 }  // namespace
 
 Command derate_command() {
-  return {.name = {},
-          .summary =
-              "Writes how much current the firmware may allow: observer and derating table, checked on motors of every declared tolerance",
-          .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
-          .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
-            const auto options = std::make_shared<DerateOptions>();
-            add_motor_options(app, options->guard);
-            app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
-            app.add_option("--to", options->to, "output format (see `heatsoak list formats`)")->capture_default_str()->type_name("FORM");
-            app.add_option("--out", options->out, "file to write")->type_name("FILE");
-            app.add_option("--compiler", options->compiler,
-                           "C compiler, such as cc: adds a binary for this machine to an FMU, which otherwise contains only its sources")
-                ->type_name("CC");
-            app.add_option(
-                   "--check", options->committed,
-                   "C header or CSV table that was written earlier with the same options; exit 1 if it allows more than a fresh one")
-                ->type_name("FILE");
-            add_quantity(app, "--period", options->guard.derate.period_s,
-                         {"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware; 10 ms unless given"});
-            add_derate_options(app, options->guard.derate);
-            add_sensor_options(app, options->sensor);
-            session.add_data_option(app);
-            session.add_answer_options(app);
-            return [options, &session] { return run(*options, session); };
-          }};
+  return {
+      .name = {},
+      .summary =
+          "Writes how much current the firmware may allow: observer and derating table, checked on motors of every declared tolerance",
+      .example = "heatsoak derate --motor maxon_ecx_flat_32l_48v --robot roboteam_twente_v2024 --to c_header --out motor_guard.h",
+      .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
+        const auto options = std::make_shared<DerateOptions>();
+        add_motor_options(app, options->guard);
+        app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
+        app.add_option("--to", options->to,
+                       "output format (see `heatsoak list formats`); unless given, that of the ending of --out, or a C header without one")
+            ->type_name("FORM");
+        app.add_option("--out", options->out, "file to write")->type_name("FILE");
+        app.add_option("--compiler", options->compiler,
+                       "C compiler, such as cc: adds a binary for this machine to an FMU, which otherwise contains only its sources")
+            ->type_name("CC");
+        app.add_option("--check", options->committed,
+                       "C header or CSV table that was written earlier with the same options; exit 1 if it allows more than a fresh one")
+            ->type_name("FILE");
+        add_quantity(app, "--period", options->guard.derate.period_s,
+                     {"period", "s", base::Range::between(1e-3, 1.0), "time between two calls of the firmware; 10 ms unless given"});
+        add_derate_options(app, options->guard.derate);
+        add_sensor_options(app, options->sensor);
+        session.add_data_option(app);
+        session.add_answer_options(app);
+        return [options, &session] { return run(*options, session); };
+      }};
 }
 
 }  // namespace heatsoak::cli::commands

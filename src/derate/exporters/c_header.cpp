@@ -36,6 +36,7 @@ std::string write_c_header(const Derating& derating) {
 ExporterType c_header() {
   return {.name = {},
           .summary = "C99 header without dependencies: observer, table, one step per period; single precision",
+          .file_ending = ".h",
           .write = write_c_header};
 }
 

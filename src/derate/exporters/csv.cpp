@@ -49,6 +49,7 @@ std::string write_csv(const Derating& derating) {
 ExporterType csv() {
   return {.name = {},
           .summary = "the table, one grid point per row, for plots and other tools; lines that begin with # state its origin",
+          .file_ending = ".csv",
           .write = write_csv};
 }
 

@@ -15,6 +15,7 @@ std::string write_json(const Derating& derating) {
 ExporterType json() {
   return {.name = {},
           .summary = "table with axes and units, observer parameters, limit and confidence (heatsoak.derating/2)",
+          .file_ending = ".json",
           .write = write_json};
 }
 
