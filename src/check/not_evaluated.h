@@ -20,6 +20,7 @@ namespace heatsoak::check {
 struct Failed {
   base::Failure failure;
 };
+  std::exception_ptr own = {};  ///< the failure with its own type, whose findings need words; null if it has none
 struct ResultNotFinite {};
 struct OutOfMemory {};
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -77,7 +78,7 @@ void evaluate_one(Outcome& outcome, Computations& computations, const CommandAns
   } catch (const NotEvaluated& found) {
     outcome.reason = found.reason();
   } catch (const base::Failure& failure) {
-    outcome.reason = Failed{failure};
+    outcome.reason = Failed{failure, std::current_exception()};
   } catch (const std::bad_alloc&) {
     outcome.reason = OutOfMemory{};
   }

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <exception>
 #include <string_view>
 #include <variant>
 
@@ -14,8 +15,21 @@ namespace {
 
 /// Joins the summary and the diagnostics of a failure in one line.
 std::string say(const check::Failed& of, const check::Limit& /*limit*/) {
-  std::string text = of.failure.message();
-  for (const base::Diagnostic& each : of.failure.diagnostics()) {
+/// Returns the failure with the words of its own type.
+base::Failure worded(const check::Failed& of) {
+  if (!of.own) {
+    return of.failure;
+  }
+  try {
+    std::rethrow_exception(of.own);
+  } catch (const base::Failure& own) {
+    return in_words(own);
+  }
+}
+
+  const base::Failure failure = worded(of);
+  std::string text = failure.message();
+  for (const base::Diagnostic& each : failure.diagnostics()) {
     const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
     text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
                         each.message);

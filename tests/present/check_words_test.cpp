@@ -4,14 +4,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <exception>
 #include <limits>
 #include <vector>
+
+#include "estimation/findings.h"
+#include "present/failure_words.h"
 
 namespace heatsoak::present {
 namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const check::Limit kPeakLimit{check::find_threshold("winding_peak_p95"), 70.0, "degC", "at most 70 degC", {"a.toml", 9, 20}};
 const check::Limit kMarginLimit{check::find_threshold("current_margin"), 3.0, "A", "at least 3 A", {"a.toml", 10, 18}};

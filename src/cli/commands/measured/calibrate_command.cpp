@@ -8,9 +8,9 @@
 #include "cli/terminal.h"
 #include "duty/named_files.h"
 #include "motor/write_motor.h"
+#include "present/failure_words.h"
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_chart.h"
-#include "present/measured/failure_words.h"
 
 namespace heatsoak::cli::commands {
 namespace {

@@ -11,10 +11,10 @@
 #include "diagnosis/diagnosis_job.h"
 #include "duty/named_files.h"
 #include "motor/write_motor.h"
+#include "present/failure_words.h"
 #include "present/measured/diagnosis.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
-#include "present/measured/failure_words.h"
 
 namespace heatsoak::cli::commands {
 namespace {

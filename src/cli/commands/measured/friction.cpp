@@ -10,7 +10,7 @@
 #include "cli/quantity_option.h"
 #include "duty/named_files.h"
 #include "friction/friction_job.h"
-#include "present/measured/failure_words.h"
+#include "present/failure_words.h"
 #include "present/measured/friction_chart.h"
 
 namespace heatsoak::cli::commands {

@@ -6,7 +6,7 @@
 #include "cli/measured/logs_option.h"
 #include "cli/quantity_option.h"
 #include "duty/named_files.h"
-#include "present/measured/failure_words.h"
+#include "present/failure_words.h"
 #include "present/measured/prediction.h"
 #include "present/measured/prediction_chart.h"
 

@@ -1,9 +1,6 @@
-#include "present/measured/failure_words.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/collected_failures.h"
 #include "base/counted.h"
 #include "base/quantity.h"
 #include "calibration/admission.h"
@@ -12,13 +9,14 @@
 #include "estimation/findings.h"
 #include "friction/friction_job.h"
 #include "friction/robot_file.h"
+#include "present/failure_words.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/friction_words.h"
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
 #include "recording/quality.h"
 
-namespace heatsoak::present {
+namespace heatsoak::present::failure_words {
 namespace {
 
 base::Failure with_message(const base::Failure& failure, std::string message) {
@@ -159,41 +157,26 @@ base::Failure worded(const diagnosis::NoEffectFollows& failure) {
                            failure.message(), worst.signal, base::significant(worst.rmse_K, 2), base::significant(worst.varies_K, 2)));
 }
 
-base::Failure each_in_words(const base::SeveralFailures& several) {
-  std::vector<base::Failure> parts;
-  for (const auto& [failure, thrown] : several.parts()) {
-    try {
-      std::rethrow_exception(thrown);
-    } catch (const base::Failure& own) {
-      parts.push_back(in_words(own));
-    }
-  }
-  return base::joined(parts);
-}
-
 /// Returns the words of the first type that the failure has.
 template <class First, class... Others>
-base::Failure worded_as(const base::Failure& failure) {
+std::optional<base::Failure> worded_as(const base::Failure& failure) {
   if (const auto* const found = dynamic_cast<const First*>(&failure)) {
     return worded(*found);
   }
   if constexpr (sizeof...(Others) > 0) {
     return worded_as<Others...>(failure);
   } else {
-    return failure;
+    return std::nullopt;
   }
 }
 
 }  // namespace
 
-base::Failure in_words(const base::Failure& failure) {
-  if (const auto* const several = dynamic_cast<const base::SeveralFailures*>(&failure)) {
-    return each_in_words(*several);
-  }
-  return worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
-                   calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
-                   friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
-                   diagnosis::NothingHeatsModel, diagnosis::NoEffectFollows>(failure);
+FailureWords measured_logs() {
+  return {&worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
+                     calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
+                     friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
+                     diagnosis::NothingHeatsModel, diagnosis::NoEffectFollows>};
 }
 
-}  // namespace heatsoak::present
+}  // namespace heatsoak::present::failure_words

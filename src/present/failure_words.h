@@ -1,9 +1,16 @@
-// Wording of failures that carry findings.
+// Wording of failures that carry findings. Each file in src/present/failure_words has the words of some types.
 #pragma once
+
+#include <optional>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak::present {
+
+struct FailureWords {
+  /// Returns the failure in words; nothing if it has none of these types.
+  std::optional<base::Failure> (*worded)(const base::Failure& failure) = nullptr;
+};
 
 /// Returns the failure with its findings in words, as diagnostics or as part of its message. A failure without findings stays as it is.
 base::Failure in_words(const base::Failure& failure);
