@@ -54,11 +54,7 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
       document.tables.push_back(table_of(*each.check));
       before = each.check;
     }
-    std::string why = explanation_words(each);
-    if (!each.passed()) {
-      const base::Location& at = each.limit.at;
-      why = fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, why);
-    }
+    std::string why = each.passed() ? explanation_words(each) : located_explanation(each);
     if (!each.before.empty()) {
       why += fmt::format("{}limit {} → {}", why.empty() ? "" : "; ", each.before, each.limit.text);
     }

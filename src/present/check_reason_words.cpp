@@ -13,8 +13,6 @@
 namespace heatsoak::present {
 namespace {
 
-/// Joins the summary and the diagnostics of a failure in one line.
-std::string say(const check::Failed& of, const check::Limit& /*limit*/) {
 /// Returns the failure with the words of its own type.
 base::Failure worded(const check::Failed& of) {
   if (!of.own) {
@@ -29,6 +27,8 @@ base::Failure worded(const check::Failed& of) {
 
   const base::Failure failure = worded(of);
   std::string text = failure.message();
+/// Joins the summary and the diagnostics of a failure in one line.
+std::string say(const check::Failed& of, const check::Limit& /*limit*/) {
   for (const base::Diagnostic& each : failure.diagnostics()) {
     const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
     text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
@@ -150,6 +150,23 @@ std::string say(const check::LimitInvalid& of, const check::Limit& /*limit*/) { 
 
 std::string words_of(const check::Reason& reason, const check::Limit& limit) {
   return std::visit([&limit](const auto& each) { return say(each, limit); }, reason);
+base::Location place_of(const check::Outcome& outcome) {
+  const auto* const failed = outcome.reason ? std::get_if<check::Failed>(&*outcome.reason) : nullptr;
+  if (failed == nullptr) {
+    return outcome.limit.at;
+  }
+  const base::Failure failure = worded(*failed);
+  const bool begins_with_place = failure.message().empty() && !failure.diagnostics().empty() && failure.diagnostics().front().at.line > 0;
+  return begins_with_place ? failure.diagnostics().front().at : outcome.limit.at;
+}
+
+std::string located_explanation(const check::Outcome& outcome) {
+  const base::Location at = place_of(outcome);
+  const std::string place = fmt::format("{}:{}:{}: ", at.file, at.line, at.column);
+  const std::string words = explanation_words(outcome);
+  return words.starts_with(place) ? words : place + words;
+}
+
 }
 
 }  // namespace heatsoak::present

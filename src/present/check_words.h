@@ -29,5 +29,9 @@ std::string words_of(const check::Reason& reason, const check::Limit& limit);
 std::string reason_words(const check::Outcome& outcome);
 /// Returns reason and basis of a threshold that fails, and the basis of one that passes.
 std::string explanation_words(const check::Outcome& outcome);
+/// Returns the place to correct: that of the file's problem if it prevents the evaluation, otherwise that of the limit.
+base::Location place_of(const check::Outcome& outcome);
+/// Returns explanation_words() behind "file:line:column: " of place_of(), as compilers write it.
+std::string located_explanation(const check::Outcome& outcome);
 
 }  // namespace heatsoak::present

@@ -57,7 +57,8 @@ std::string annotations(std::span<const check::Outcome> outcomes, const std::fil
   std::string text;
   for (const check::Outcome& each : outcomes) {
     if (!each.passed()) {
-      text += annotation(each.limit.at, workspace, fmt::format("{}: {}", each.check->name, each.limit.type->name), explanation_words(each));
+      text +=
+          annotation(place_of(each), workspace, fmt::format("{}: {}", each.check->name, each.limit.type->name), explanation_words(each));
     }
   }
   return text;

@@ -48,9 +48,10 @@ std::string test_case(const check::Outcome& each) {
     return text + fmt::format(">\n      <system-out>{}</system-out>\n    </testcase>\n", base::xml_attribute(facts));
   }
   const std::string_view element = each.measured ? "failure" : "error";
+  const base::Location at = place_of(each);
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
                             each.measured ? "limit_exceeded" : "not_evaluated", base::xml_attribute(reason_words(each)),
-                            base::xml_attribute(each.limit.at.file), each.limit.at.line, base::xml_attribute(facts));
+                            base::xml_attribute(at.file), at.line, base::xml_attribute(facts));
 }
 
 /// Returns one test suite per check.
