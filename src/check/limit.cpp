@@ -117,20 +117,57 @@ std::optional<Looseness> looseness(double value, std::string_view text, const Th
   // The slack absorbs rounding errors: 99.9 % in a file is not exactly 0.999.
   constexpr double kRounding = 1e-9;
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
-  const bool is_permitted =
-      loosest->refusal.empty() && keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack));
+  const bool is_permitted = !loosest->refusal && keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack));
   return is_permitted ? std::nullopt : std::optional(Looseness{std::string(text), *loosest});
+}
+
+std::string_view words_of(LoosestBy origin) {
+  switch (origin) {
+    case LoosestBy::winding_limit:
+      return "the motor's own winding limit";
+    case LoosestBy::stator_limit:
+      return "the motor's own stator limit";
+    case LoosestBy::winding_limit_of_stator:
+      return "the motor's own winding limit, which the stator must not exceed either";
+    case LoosestBy::own_limits:
+      return "the motor's own limits";
+    case LoosestBy::driver_limit:
+      return "the current limit of the robot's driver";
+    case LoosestBy::whole_charge:
+      return "the largest current of all wheels during the whole duty";
+    case LoosestBy::duty_duration:
+      return "the duration of the duty";
+    case LoosestBy::half_match:
+      return "half of the match";
+    case LoosestBy::temperature_range:
+      return "the motor's range from the air to its winding limit";
+    case LoosestBy::motors_against:
+      return "the number of motors in 'against'";
+    case LoosestBy::values_of_files:
+      return "the number of values in a complete motor file, for every file";
+    case LoosestBy::largest_core:
+      return "twice the code of the drive core with the largest guard table";
+    case LoosestBy::largest_share:
+      return "the largest share that a limit may permit";
+    case LoosestBy::smallest_value:
+      return "the smallest possible value";
+  }
+  return {};
 }
 
 std::string problem_of(const Looseness& found, const ThresholdType& type) {
   const LoosestLimit& loosest = found.loosest;
-  if (!loosest.refusal.empty()) {
-    return loosest.refusal;
+  if (loosest.refusal) {
+    return fmt::format(
+        "counts only above the motor's own winding limit: 'temperature' is {:.1f} °C, the limit {:.1f} °C; expected a 'temperature' up to "
+        "that limit",
+        loosest.refusal->temperature_C, loosest.refusal->winding_limit_C);
   }
   if (loosest.always_holds) {
-    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", found.text, loosest.what, shown(loosest.value, type));
+    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", found.text, words_of(loosest.origin),
+                       shown(loosest.value, type));
   }
-  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", found.text, loosest.what,
+  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", found.text, words_of(loosest.origin),
                      shown(loosest.value, type));
 }
 

@@ -30,6 +30,8 @@ struct Looseness {
 };
 /// Returns nothing if the limit `text` of `value` is permitted in this check.
 std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check);
+/// Returns the origin: "the motor's own winding limit".
+std::string_view words_of(LoosestBy origin);
 /// Returns the problem of that limit in a check file.
 std::string problem_of(const Looseness& found, const ThresholdType& type);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "derate/committed_table.h"
 #include "derate/header_text.h"
 #include "select/evaluate.h"
 #include "simulate/drive_score.h"
@@ -19,8 +20,8 @@ namespace heatsoak::check {
 /// A file is missing or wrong, or a computation of another layer failed.
 struct Failed {
   base::Failure failure;
-};
   std::exception_ptr own = {};  ///< the failure with its own type, whose findings need words; null if it has none
+};
 struct ResultNotFinite {};
 struct OutOfMemory {};
 
@@ -56,7 +57,7 @@ struct TableOfOtherMotor {
 };
 struct SensorOptionsDiffer {
   std::filesystem::path table;
-  std::string difference;  ///< derate::sensor_difference()
+  derate::SensorDifference difference;
 };
 /// The observer in the committed header differs from a fresh one, so its table has another meaning.
 struct ObserverDiffers {

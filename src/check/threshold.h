@@ -57,16 +57,40 @@ struct Measured {
       0.0;  ///< width of the value's 95 % interval; --update leaves a share of it as room if it exceeds the distance
 };
 
+/// Origin of the loosest limit that a check may set.
+enum class LoosestBy {
+  winding_limit,            ///< the motor's own
+  stator_limit,             ///< the motor's own
+  winding_limit_of_stator,  ///< the motor's own, for the stator of a file without a limit for it
+  own_limits,               ///< the motor's, for a margin to them
+  driver_limit,             ///< current limit of the robot's driver
+  whole_charge,             ///< the largest current of all wheels during the whole duty
+  duty_duration,
+  half_match,
+  temperature_range,  ///< the motor's, from the air to its winding limit
+  motors_against,     ///< number of motors to rank with
+  values_of_files,    ///< number of values in a complete motor file, for every file
+  largest_core,       ///< twice the code of the drive core with the largest guard table
+  largest_share,      ///< below 100 %, which holds always
+  smallest_value      ///< the number is never below it
+};
+
+/// Time is counted above a temperature that exceeds the motor's own limit, so every limit comes too late.
+struct CountedTooHot {
+  double temperature_C = 0.0;
+  double winding_limit_C = 0.0;
+};
+
 /// The loosest limit that a check may set, such as the motor's own winding limit.
 struct LoosestLimit {
-  double value = 0.0;         ///< in the unit of the threshold
-  std::string what;           ///< its origin: "the winding limit of the motor"
-  bool always_holds = false;  ///< a limit of this value holds always, so only a tighter one is permitted
-  std::string refusal = {};   ///< why the settings of the check make every limit useless; empty if they do not
+  double value = 0.0;  ///< in the unit of the threshold
+  LoosestBy origin = LoosestBy::largest_share;
+  bool always_holds = false;                  ///< a limit of this value holds always, so only a tighter one is permitted
+  std::optional<CountedTooHot> refusal = {};  ///< why the settings of the check make every limit useless
 };
 
 /// A share of 100 % holds always, so a limit must be below it.
-inline LoosestLimit largest_share_limit() { return {0.999, "the largest share that a limit may permit"}; }
+inline LoosestLimit largest_share_limit() { return {0.999, LoosestBy::largest_share}; }
 
 struct ThresholdType {
   std::string_view name;  ///< the file's name; set by all_thresholds()

@@ -327,10 +327,11 @@ void require_range(const CommittedTable& committed, std::string_view name, std::
   const auto [least, most] = std::ranges::minmax(committed.rows, {}, column);
   const double rounding = kRounding_share * std::max(std::abs(first), std::abs(last));
   if (least.*column > first + rounding || most.*column < last - rounding) {
-    throw base::bad_input({committed.file.string()}, std::string(name),
-                          fmt::format("the table covers {:.4g} to {:.4g} {}, a fresh one {:.4g} to {:.4g} {}: it is cut off, or was written "
-                                      "with other values; write it again with `heatsoak derate --to csv`",
-                                      least.*column, most.*column, unit, first, last, unit));
+    throw base::bad_input(
+        {committed.file.string()}, std::string(name),
+        fmt::format("the table covers {:.4g} to {:.4g} {}, a fresh one {:.4g} to {:.4g} {}: it is cut off, or was written "
+                    "with other values; write it again with `heatsoak derate --to csv`",
+                    least.*column, most.*column, unit, first, last, unit));
   }
 }
 
@@ -391,33 +392,32 @@ CommittedTable read_committed_table(const std::filesystem::path& file) {
   return committed;
 }
 
-std::string sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected) {
-  if (committed.code.empty()) {
-    return {};
+SensorsDiffer::SensorsDiffer(const std::filesystem::path& committed, SensorDifference difference)
+    : base::Failure(base::ExitCode::bad_input, fmt::format("--check {}", committed.string())), difference_(std::move(difference)) {}
+
+std::optional<SensorDifference> sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected) {
+  using Kind = SensorDifference::Kind;
+  if (committed.code.empty() || (!committed.has_sensor && !expected)) {
+    return std::nullopt;
   }
   if (committed.has_sensor && committed.sensor_flags.empty()) {
-    return "the header has a temperature sensor and does not state its options; generate the header again";
+    return SensorDifference{Kind::options_unstated};
   }
   if (!expected) {
-    return !committed.has_sensor ? std::string()
-                                 : fmt::format(
-                                       "the header has a temperature sensor; expected the options that it was generated "
-                                       "with: {}",
-                                       committed.sensor_flags);
+    return SensorDifference{Kind::sensor_unexpected, committed.sensor_flags};
   }
   if (!committed.has_sensor) {
-    return "the header has no temperature sensor; leave out the options of the sensor, or generate the header again with them";
+    return SensorDifference{Kind::sensor_missing};
   }
+  SensorDifference found{Kind::other_options, committed.sensor_flags};
   const std::map<std::string, std::string> now = by_name(sensor_flags(*expected));
-  std::string text;
   for (const auto& [name, value] : by_name(committed.sensor_flags)) {
     const auto other = now.find(name);
-    const bool is_equal = other != now.end() && other->second == value;
-    text += is_equal             ? ""
-            : other == now.end() ? fmt::format(" {} {}, which is missing;", name, value)
-                                 : fmt::format(" {} {}, not {};", name, value, other->second);
+    if (other == now.end() || other->second != value) {
+      found.options.push_back({name, value, other == now.end() ? std::nullopt : std::optional(other->second)});
+    }
   }
-  return text.empty() ? text : fmt::format("the header was generated with{} use its options or generate the header again", text);
+  return found.options.empty() ? std::nullopt : std::optional(std::move(found));
 }
 
 TableComparison compare(const CommittedTable& committed, const Derating& fresh) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "derate/derating.h"
 #include "derate/header_text.h"
 
@@ -38,9 +39,37 @@ struct CommittedTable {
 /// of file, a truncated header, an axis that does not ascend, an impossible value or an incomplete grid. It has the line if there is one.
 CommittedTable read_committed_table(const std::filesystem::path& file);
 
-/// Returns which options of the sensor differ between a C header and `expected`; empty if none does, and for a CSV table. A header with
-/// other options has another observer, so its currents cannot be compared with those of a fresh header.
-std::string sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected);
+/// Difference between the sensor of a C header and the expected one.
+struct SensorDifference {
+  enum class Kind {
+    options_unstated,   ///< the header has a sensor and does not state its options
+    sensor_unexpected,  ///< the header has a sensor; none is expected
+    sensor_missing,     ///< the header has none
+    other_options
+  };
+  struct Option {
+    std::string name;                           ///< "--thermistor-accuracy"
+    std::string value;                          ///< in the header
+    std::optional<std::string> expected_value;  ///< empty: the expected options lack it
+  };
+  Kind kind = Kind::other_options;
+  std::string header_flags = {};     ///< sensor_flags() of the header
+  std::vector<Option> options = {};  ///< those that differ, for other_options
+};
+
+/// Thrown by run_derating() if the sensor of the committed header is another one.
+class SensorsDiffer : public base::Failure {
+ public:
+  SensorsDiffer(const std::filesystem::path& committed, SensorDifference difference);
+  [[nodiscard]] const SensorDifference& difference() const { return difference_; }
+
+ private:
+  SensorDifference difference_;
+};
+
+/// Returns how the sensor of a C header differs from `expected`; nothing if it does not, and for a CSV table. A header with other options
+/// has another observer, so its currents cannot be compared with those of a fresh header.
+std::optional<SensorDifference> sensor_difference(const CommittedTable& committed, const std::optional<SensorOptions>& expected);
 
 /// Point at which two tables differ most.
 struct TablePlace {

@@ -1,10 +1,6 @@
 #include "derate/derating_job.h"
 
-#include <fmt/format.h>
-
 #include <utility>
-
-#include "base/diagnostic.h"
 
 namespace heatsoak::derate {
 
@@ -13,8 +9,8 @@ DeratingAnswer run_derating(const DeratingJob& job, const base::Progress& progre
   if (!job.committed.empty()) {
     // Read first, so that an invalid file is reported before the computation.
     check = TableCheck{read_committed_table(job.committed), {}};
-    if (const std::string problem = sensor_difference(check->committed, job.options.sensor); !problem.empty()) {
-      throw base::Failure(base::ExitCode::bad_input, fmt::format("--check {}: {}", job.committed.string(), problem));
+    if (std::optional<SensorDifference> difference = sensor_difference(check->committed, job.options.sensor)) {
+      throw SensorsDiffer(job.committed, *std::move(difference));
     }
   }
   DeratingAnswer answer{.derating = derate(job.motor, job.robot, job.options, progress), .text = {}, .check = std::move(check)};

@@ -52,7 +52,7 @@ Levels levels_of(const std::vector<estimation::MeasuredRun>& runs) {
 }
 
 struct Primitive {
-  std::string_view what;
+  PlannedRun run{};
   /// Fractions of the highest speed and of the highest current, as a function of the time in s.
   std::function<std::pair<double, double>(int)> shares;
 };
@@ -62,16 +62,13 @@ int step_of(int time_s, int length_s) { return time_s / length_s; }
 
 const std::vector<Primitive>& menu() {
   static const std::vector<Primitive> all{
-      {"ten minutes without load, with the speed raised in steps", [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
-      {"ten minutes of current pulses at standstill",
-       [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * step_of(s, 120) : 0.0); }},
-      {"heat at standstill for five minutes, then spin without load while hot",
-       [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
-      {"spin without load for five minutes from cold, then rest",
-       [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
-      {"one current at four speeds", [](int s) { return std::pair(0.25 * (1 + step_of(s, 150)), 0.5); }},
-      {"one speed at four currents", [](int s) { return std::pair(0.6, 0.2 * (1 + step_of(s, 150))); }},
-      {"heat at standstill for five minutes, then rest", [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
+      {PlannedRun::speeds_without_load, [](int s) { return std::pair(0.2 * (1 + step_of(s, 120)), 0.05); }},
+      {PlannedRun::pulses_at_standstill, [](int s) { return std::pair(0.0, s % 60 < 25 ? 0.4 + 0.12 * step_of(s, 120) : 0.0); }},
+      {PlannedRun::spin_after_standstill, [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.9, 0.05); }},
+      {PlannedRun::rest_after_spin, [](int s) { return s < 300 ? std::pair(0.9, 0.05) : std::pair(0.0, 0.0); }},
+      {PlannedRun::one_current_at_speeds, [](int s) { return std::pair(0.25 * (1 + step_of(s, 150)), 0.5); }},
+      {PlannedRun::one_speed_with_currents, [](int s) { return std::pair(0.6, 0.2 * (1 + step_of(s, 150))); }},
+      {PlannedRun::rest_after_standstill, [](int s) { return s < 300 ? std::pair(0.0, 0.6) : std::pair(0.0, 0.0); }},
   };
   return all;
 }
@@ -118,12 +115,12 @@ double hottest_C(const estimation::Model& model, const estimation::MeasuredRun& 
   return path.state_C.maxCoeff();
 }
 
-/// Sets the description and the largest current and speed of a planned experiment.
+/// Sets the kind and the largest current and speed of a planned experiment.
 void describe(const Primitive& primitive, const estimation::MeasuredRun& run, Experiment& experiment) {
   const double most_A = std::ranges::max(run.at, {}, &thermal::OperatingPoint<double>::current_rms_A).current_rms_A;
   const double fastest_rad_per_s =
       std::ranges::max(run.at, {}, &thermal::OperatingPoint<double>::speed_mean_rad_per_s).speed_mean_rad_per_s;
-  experiment.what = primitive.what;
+  experiment.planned = primitive.run;
   experiment.most_A = most_A > 0.0 ? std::optional(most_A) : std::nullopt;
   experiment.most_rad_per_s = fastest_rad_per_s > 0.0 ? std::optional(fastest_rad_per_s) : std::nullopt;
 }

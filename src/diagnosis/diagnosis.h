@@ -64,10 +64,22 @@ struct BalanceRow {
   std::map<std::string, double> heat_W;
 };
 
+/// Run of ten minutes that the advisor can plan.
+enum class PlannedRun {
+  speeds_without_load,      ///< raised in steps
+  pulses_at_standstill,     ///< pulses of current
+  spin_after_standstill,    ///< heated at standstill for five minutes, then without load while hot
+  rest_after_spin,          ///< without load for five minutes from cold, then without current
+  one_current_at_speeds,    ///< four of them
+  one_speed_with_currents,  ///< four of them
+  rest_after_standstill     ///< heated at standstill for five minutes, then without current
+};
+
 struct Experiment {
-  std::string effect;  ///< accepted effect
-  std::string rival;   ///< effect to separate it from
-  std::string what;    ///< instruction to the user, one sentence
+  std::string effect;                      ///< accepted effect
+  std::string rival;                       ///< effect to separate it from
+  std::string other;                       ///< experiment of the catalogue that separates the two, Candidate::experiment()
+  std::optional<PlannedRun> planned = {};  ///< replaces `other` if it separates them
   /// Largest current and speed at which the motor gets no hotter than in the runs; empty: not part of the experiment.
   std::optional<double> most_A = {};
   std::optional<double> most_rad_per_s = {};

@@ -9,6 +9,8 @@
 #include "base/counted.h"
 #include "check/limit.h"
 #include "present/check_words.h"
+#include "present/derating.h"
+#include "present/failure_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -25,10 +27,10 @@ base::Failure worded(const check::Failed& of) {
   }
 }
 
-  const base::Failure failure = worded(of);
-  std::string text = failure.message();
 /// Joins the summary and the diagnostics of a failure in one line.
 std::string say(const check::Failed& of, const check::Limit& /*limit*/) {
+  const base::Failure failure = worded(of);
+  std::string text = failure.message();
   for (const base::Diagnostic& each : failure.diagnostics()) {
     const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
     text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
@@ -76,7 +78,7 @@ std::string say(const check::TableOfOtherMotor& of, const check::Limit& /*limit*
 }
 
 std::string say(const check::SensorOptionsDiffer& of, const check::Limit& /*limit*/) {
-  return fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", of.table.string(), of.difference);
+  return fmt::format("{}: {}; 'derate' takes them as keys without \"--\", \"_\" for \"-\"", of.table.string(), words_of(of.difference));
 }
 
 std::string say(const check::ObserverDiffers& of, const check::Limit& /*limit*/) {
@@ -148,8 +150,6 @@ std::string say(const check::LimitInvalid& of, const check::Limit& /*limit*/) { 
 
 }  // namespace
 
-std::string words_of(const check::Reason& reason, const check::Limit& limit) {
-  return std::visit([&limit](const auto& each) { return say(each, limit); }, reason);
 base::Location place_of(const check::Outcome& outcome) {
   const auto* const failed = outcome.reason ? std::get_if<check::Failed>(&*outcome.reason) : nullptr;
   if (failed == nullptr) {
@@ -167,6 +167,8 @@ std::string located_explanation(const check::Outcome& outcome) {
   return words.starts_with(place) ? words : place + words;
 }
 
+std::string words_of(const check::Reason& reason, const check::Limit& limit) {
+  return std::visit([&limit](const auto& each) { return say(each, limit); }, reason);
 }
 
 }  // namespace heatsoak::present

@@ -261,6 +261,27 @@ std::string limit_range_words(const derate::Derating& derating) {
              : "";
 }
 
+std::string words_of(const derate::SensorDifference& difference) {
+  using Kind = derate::SensorDifference::Kind;
+  switch (difference.kind) {
+    case Kind::options_unstated:
+      return "the header has a temperature sensor and does not state its options; generate the header again";
+    case Kind::sensor_unexpected:
+      return fmt::format("the header has a temperature sensor; expected the options that it was generated with: {}",
+                         difference.header_flags);
+    case Kind::sensor_missing:
+      return "the header has no temperature sensor; leave out the options of the sensor, or generate the header again with them";
+    case Kind::other_options:
+      break;
+  }
+  std::string options;
+  for (const derate::SensorDifference::Option& each : difference.options) {
+    options += each.expected_value ? fmt::format(" {} {}, not {};", each.name, each.value, *each.expected_value)
+                                   : fmt::format(" {} {}, which is missing;", each.name, each.value);
+  }
+  return fmt::format("the header was generated with{} use its options or generate the header again", options);
+}
+
 Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer) {
   Document document = document_of(answer.derating, job.motor);
   add_robot_notes(document, job.robot);

@@ -11,6 +11,9 @@ namespace heatsoak::present {
 /// Returns " (lower end of the limit's range around 155 °C)" if the motor's file gives the winding limit as a range; else nothing.
 std::string limit_range_words(const derate::Derating& derating);
 
+/// States how the sensor of a committed header differs, and what to do.
+std::string words_of(const derate::SensorDifference& difference);
+
 /// Returns the document. Changes since an earlier table was written come last: unsafe ones are warnings, the others notes.
 Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer);
 Json table_check_json(const derate::TableCheck& check);

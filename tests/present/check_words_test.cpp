@@ -52,7 +52,7 @@ TEST(CheckWords, state_that_an_event_never_happens) {
 
 TEST(CheckWords, state_why_update_leaves_a_limit) {
   check::Outcome loose = outcome(kPeakLimit, 160.0);
-  loose.not_rewritten = check::Looseness{"at most 167 degC", {155.0, "the motor's own winding limit"}};
+  loose.not_rewritten = check::Looseness{"at most 167 degC", {155.0, check::LoosestBy::winding_limit}};
   EXPECT_EQ(reason_words(loose),
             "160.0 °C is above the limit of 70.0 °C; the limit is not rewritten: \"at most 167 degC\" is looser than the motor's own "
             "winding limit, 155.0 °C; expected that or a tighter limit");
@@ -88,6 +88,43 @@ TEST(CheckWords, of_a_failure_are_its_summary_and_its_problems) {
   const base::Failure failure(base::ExitCode::bad_input, "it failed",
                               {{{"a.toml", 5, 9}, "motor", "is missing"}, {{"b.h"}, {}, "is empty"}});
   EXPECT_EQ(words_of(check::Failed{failure}, kPeakLimit), "it failed; a.toml:5:9: motor: is missing; b.h: is empty");
+}
+
+// The command that computes the same alone gives this advice, too.
+TEST(CheckWords, of_a_failure_of_its_own_type_are_those_of_the_verb) {
+  check::Outcome failed;
+  failed.limit = kPeakLimit;
+  failed.limit.at = {"checks.toml", 8, 3};
+  try {
+    throw estimation::RunNotSimulated("run1", base::Failure(base::ExitCode::numerics_failed, "too fast"));
+  } catch (const base::Failure& failure) {
+    failed.reason = check::Failed{failure, std::current_exception()};
+    EXPECT_EQ(reason_words(failed), in_words(failure).message());
+  }
+  EXPECT_THAT(located_explanation(failed), StartsWith("checks.toml:8:3: run1: too fast; check the units of the log's columns"));
+}
+
+TEST(CheckWords, name_one_place_which_is_that_of_the_problem) {
+  check::Outcome failed;
+  failed.limit = kPeakLimit;
+  failed.limit.at = {"checks.toml", 8, 3};
+  failed.reason = check::Failed{base::Failure(base::ExitCode::bad_input, "", {{{"checks.toml", 4, 9}, "motor", "a.toml: cannot be read"}})};
+  EXPECT_EQ(place_of(failed).line, 4);
+  EXPECT_EQ(located_explanation(failed), "checks.toml:4:9: motor: a.toml: cannot be read");
+  failed.reason = check::ResultNotFinite{};
+  EXPECT_EQ(located_explanation(failed), "checks.toml:8:3: the result is not a number");
+}
+
+TEST(CheckWords, name_how_the_sensor_of_a_header_differs) {
+  using derate::SensorDifference;
+  const auto words = [](const SensorDifference& difference) { return words_of(check::SensorOptionsDiffer{"g.h", difference}, kPeakLimit); };
+  EXPECT_THAT(words({SensorDifference::Kind::options_unstated}), StartsWith("g.h: the header has a temperature sensor and does not state"));
+  EXPECT_THAT(words({SensorDifference::Kind::sensor_unexpected, "--thermistor stator"}),
+              HasSubstr("expected the options that it was generated with: --thermistor stator"));
+  EXPECT_THAT(words({SensorDifference::Kind::sensor_missing}), HasSubstr("the header has no temperature sensor"));
+  EXPECT_THAT(
+      words({SensorDifference::Kind::other_options, "", {{"--thermistor-accuracy", "1.5K", "10K"}, {"--thermistor-lag", "3s", {}}}}),
+      HasSubstr("generated with --thermistor-accuracy 1.5K, not 10K; --thermistor-lag 3s, which is missing; use its options"));
 }
 
 TEST(CheckWords, name_what_an_answer_lacks) {

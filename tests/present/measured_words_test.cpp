@@ -337,6 +337,23 @@ TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
   EXPECT_THAT(failed.message(), testing::StartsWith("run1: too fast; check the units of the log's columns"));
 }
 
+TEST(WordsOfDiagnosis, Experiments) {
+  diagnosis::Experiment experiment{.effect = "windage", .rival = "iron_loss_eddy", .other = "close the housing"};
+  EXPECT_EQ(experiment_words(experiment), "close the housing");
+  std::set<std::string> words;
+  for (int run = 0; run <= static_cast<int>(diagnosis::PlannedRun::rest_after_standstill); ++run) {
+    experiment.planned = static_cast<diagnosis::PlannedRun>(run);
+    words.insert(experiment_words(experiment));
+  }
+  EXPECT_EQ(words.size(), 7U);
+  EXPECT_FALSE(words.contains(""));
+  experiment.planned = diagnosis::PlannedRun::one_speed_with_currents;
+  experiment.most_A = 2.04;
+  experiment.most_rad_per_s = 150.0;
+  EXPECT_EQ(experiment_words(experiment),
+            "one speed at four currents; with at most 2 A and 150 rad/s the motor gets no hotter than in these runs");
+}
+
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   diagnosis::Diagnosis found;
   diagnosis::FoundEffect deviation;
@@ -399,6 +416,7 @@ TEST(WordsOfFriction, Suspicions) {
       {DampingDiffersFromBackEmf{9.5},
        "d is 9.5 times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its motor, a "
        "modulation in percent, a voltage in millivolts or too high, or is it another motor?"},
+      {MoreWheelsThanRobot{4, 3}, "the log has values of wheel 4, but the robot's file has 3 wheels: is it the log of another robot?"},
       {WheelWithoutVoltage{2}, "wheel 2 turns with hardly any voltage: is its modulation missing from the log?"},
       {WheelVoltageFallsWithSpeed{2}, "voltage of wheel 2 falls as it turns faster: does its speed or its modulation have the wrong sign?"},
       {FrictionDrivesWheel{2, -0.5, -1.25},
@@ -416,7 +434,6 @@ TEST(WordsOfFriction, Suspicions) {
 TEST(WordsOfFriction, ProblemsOfWheels) {
   using enum friction::WheelProblem;
   EXPECT_EQ(words_of(hardly_turns), "it hardly turns in any steady leg");
-      {MoreWheelsThanRobot{4, 3}, "the log has values of wheel 4, but the robot's file has 3 wheels: is it the log of another robot?"},
   EXPECT_EQ(words_of(constant_voltage), "its voltage is the same in all legs");
   EXPECT_THAT(words_of(one_speed), HasSubstr("drive at two speeds or more"));
   EXPECT_THAT(words_of(too_few_headings), HasSubstr("drive at least six directions all around"));

@@ -15,8 +15,8 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
   if (!committed.motor_id.empty() && committed.motor_id != check.motor->id) {
     throw NotEvaluated(TableOfOtherMotor{check.table, committed.motor_id, check.motor->id});
   }
-  if (const std::string difference = derate::sensor_difference(committed, check.derate.sensor); !difference.empty()) {
-    throw NotEvaluated(SensorOptionsDiffer{check.table, difference});
+  if (const std::optional<derate::SensorDifference> difference = derate::sensor_difference(committed, check.derate.sensor)) {
+    throw NotEvaluated(SensorOptionsDiffer{check.table, *difference});
   }
   return derate::compare(committed, computations.derating(check, check.derate));
 }
@@ -24,7 +24,7 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
 /// A table cannot differ by more than the current that the driver permits.
 inline std::optional<LoosestLimit> largest_difference(const Check& check) {
   return check.robot && std::isfinite(check.robot->drive.current_limit_A)
-             ? std::optional<LoosestLimit>({check.robot->drive.current_limit_A, "the current limit of the robot's driver", true})
+             ? std::optional<LoosestLimit>({check.robot->drive.current_limit_A, LoosestBy::driver_limit, true})
              : std::nullopt;
 }
 

@@ -32,7 +32,7 @@ ThresholdType core_size() {
           .takes = {Setting::conditions, Setting::derate},
           .loosest = [](const Check& check) -> std::optional<LoosestLimit> {
             return LoosestLimit{2.0 * static_cast<double>(firmware::largest_core_bytes(check.derate.table.most_bytes)),
-                                "twice the code of the drive core with the largest guard table"};
+                                LoosestBy::largest_core};
           },
           .measure = measure_core_size};
 }

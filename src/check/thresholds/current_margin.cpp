@@ -26,7 +26,7 @@ ThresholdType current_margin() {
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
           .loosest = [](const Check&) -> std::optional<LoosestLimit> {
-            return LoosestLimit{0.0, "the motor's own limits"};
+            return LoosestLimit{0.0, LoosestBy::own_limits};
           },
           .measure = measure_current_margin};
 }

@@ -28,7 +28,7 @@ ThresholdType guard_active_share() {
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::seed, Setting::conditions, Setting::derate},
           .loosest = [](const Check&) -> std::optional<LoosestLimit> {
-            return LoosestLimit{select::kMajority, "half of the match"};
+            return LoosestLimit{select::kMajority, LoosestBy::half_match};
           },
           .measure = measure_guard_active_share};
 }

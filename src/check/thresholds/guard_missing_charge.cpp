@@ -18,7 +18,7 @@ std::optional<LoosestLimit> most_charge(const Check& check) {
   try {
     const double most_A = derate::barrier_rules(*check.motor, *check.robot, check.derate).most_current_A;
     const auto wheels = static_cast<double>(check.robot->wheels.axis_rad.size());
-    return LoosestLimit{*duration_s * most_A * wheels, "the largest current of all wheels during the whole duty", true};
+    return LoosestLimit{*duration_s * most_A * wheels, LoosestBy::whole_charge, true};
   } catch (const base::Failure&) {
     return std::nullopt;  // the evaluation reports it
   }

@@ -50,8 +50,8 @@ Measured measure_lint_problems(const Check& check, Computations& /*computations*
 std::optional<LoosestLimit> one_for_each_value(const Check& check) {
   const std::size_t own = (check.motor ? 1U : 0U) + (check.robot ? 1U : 0U) + (check.duty ? 1U : 0U);
   const std::size_t files = check.files.empty() ? own : check.files.size();
-  return files > 0 ? std::optional<LoosestLimit>({static_cast<double>(files * motor::motor_parameter_specs().size()),
-                                                  "the number of values in a complete motor file, for every file", true})
+  return files > 0 ? std::optional<LoosestLimit>(
+                         {static_cast<double>(files * motor::motor_parameter_specs().size()), LoosestBy::values_of_files, true})
                    : std::nullopt;
 }
 

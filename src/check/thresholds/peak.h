@@ -13,9 +13,9 @@ inline constexpr base::Range kPlausible_C = base::Range::between(-60.0, 1000.0);
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
 template <class Member>
-std::optional<LoosestLimit> own_limit(const Check& check, Member motor::MotorValues::*limit_C, const char* what) {
+std::optional<LoosestLimit> own_limit(const Check& check, Member motor::MotorValues::*limit_C, LoosestBy origin) {
   const std::optional<double> own_C = check.motor ? std::optional<double>(check.motor->nominal.*limit_C) : std::nullopt;
-  return own_C ? std::optional<LoosestLimit>({*own_C, what}) : std::nullopt;
+  return own_C ? std::optional<LoosestLimit>({*own_C, origin}) : std::nullopt;
 }
 
 /// Returns the upper end of the 95 % interval of a peak's 95th percentile; the origin is the air temperature. Throws NotEvaluated if there

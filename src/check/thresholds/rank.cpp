@@ -37,7 +37,7 @@ ThresholdType rank() {
             // A limit at the last rank always holds. If `against` is empty, other problems are reported.
             return check.against.empty()
                        ? std::nullopt
-                       : std::optional<LoosestLimit>({static_cast<double>(check.against.size()), "the number of motors in 'against'"});
+                       : std::optional<LoosestLimit>({static_cast<double>(check.against.size()), LoosestBy::motors_against});
           },
           .measure = measure_rank};
 }

@@ -15,10 +15,8 @@ ThresholdType stator_peak_p95() {
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
           .loosest =
               [](const Check& check) {
-                const auto own = own_limit(check, &motor::MotorValues::stator_limit_C, "the motor's own stator limit");
-                return own ? own
-                           : own_limit(check, &motor::MotorValues::winding_limit_C,
-                                       "the motor's own winding limit, which the stator must not exceed either");
+                const auto own = own_limit(check, &motor::MotorValues::stator_limit_C, LoosestBy::stator_limit);
+                return own ? own : own_limit(check, &motor::MotorValues::winding_limit_C, LoosestBy::winding_limit_of_stator);
               },
           .measure =
               [](const Check& check, Computations& computations) {

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -40,14 +38,10 @@ Measured measure_time_above(const Check& check, Computations& computations) {
 /// The time above a temperature never exceeds the duration of the duty, and time above more than the motor's own limit comes too late.
 std::optional<LoosestLimit> loosest(const Check& check) {
   if (check.motor && check.temperature_C && *check.temperature_C > check.motor->nominal.winding_limit_C) {
-    return LoosestLimit{.value = 0.0,
-                        .what = {},
-                        .refusal = fmt::format("counts only above the motor's own winding limit: 'temperature' is {:.1f} °C, the limit "
-                                               "{:.1f} °C; expected a 'temperature' up to that limit",
-                                               *check.temperature_C, check.motor->nominal.winding_limit_C)};
+    return LoosestLimit{.refusal = CountedTooHot{*check.temperature_C, check.motor->nominal.winding_limit_C}};
   }
   const std::optional<double> duration_s = duty_duration_s(check);
-  return duration_s ? std::optional<LoosestLimit>({*duration_s, "the duration of the duty", true}) : std::nullopt;
+  return duration_s ? std::optional<LoosestLimit>({*duration_s, LoosestBy::duty_duration, true}) : std::nullopt;
 }
 
 }  // namespace

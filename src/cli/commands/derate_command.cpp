@@ -13,6 +13,7 @@
 #include "derate/derating_job.h"
 #include "duty/named_files.h"
 #include "present/derating.h"
+#include "present/failure_words.h"
 
 namespace heatsoak::cli::commands {
 namespace {
@@ -41,7 +42,6 @@ const derate::ExporterType& exporter_named(const std::string& name) {
                       fmt::format("--to {}: expected one of {}{}", name, expected, base::did_you_mean(name, names)));
 }
 
-base::ExitCode run(const DerateOptions& options, Session& session) {
 /// Returns the format of --to or else that of the ending of --out. A name without an ending, or no name, gets a C header.
 const derate::ExporterType& exporter_of(const DerateOptions& options) {
   const std::string ending = std::filesystem::path(options.out).extension().string();
@@ -60,6 +60,7 @@ const derate::ExporterType& exporter_of(const DerateOptions& options) {
                                   options.out, expected));
 }
 
+base::ExitCode run(const DerateOptions& options, Session& session) {
   const derate::ExporterType& exporter = exporter_of(options);
   derate::DerateOptions derate_options = options.guard.derate;
   derate_options.sensor = sensor_options(options.sensor);
@@ -86,8 +87,10 @@ const derate::ExporterType& exporter_of(const DerateOptions& options) {
   job.exporter = options.out.empty() ? nullptr : &exporter;
   job.compiler = options.compiler;
   job.committed = options.committed;
-  const derate::DeratingAnswer answer = with_progress("searching the safety factor on heat", 5.0,
-                                                      [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
+  const derate::DeratingAnswer answer = present::with_words([&] {
+    return with_progress("searching the safety factor on heat", 5.0,
+                         [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
+  });
   present::Document document = present::derating_document(job, answer);
   if (!options.out.empty()) {
     session.write(options.out, answer.text);

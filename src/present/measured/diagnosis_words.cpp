@@ -279,6 +279,26 @@ std::string reason_in_words(const attribution::Refusal& refused) {
   return "";
 }
 
+std::string_view run_words(diagnosis::PlannedRun run) {
+  switch (run) {
+    case diagnosis::PlannedRun::speeds_without_load:
+      return "ten minutes without load, with the speed raised in steps";
+    case diagnosis::PlannedRun::pulses_at_standstill:
+      return "ten minutes of current pulses at standstill";
+    case diagnosis::PlannedRun::spin_after_standstill:
+      return "heat at standstill for five minutes, then spin without load while hot";
+    case diagnosis::PlannedRun::rest_after_spin:
+      return "spin without load for five minutes from cold, then rest";
+    case diagnosis::PlannedRun::one_current_at_speeds:
+      return "one current at four speeds";
+    case diagnosis::PlannedRun::one_speed_with_currents:
+      return "one speed at four currents";
+    case diagnosis::PlannedRun::rest_after_standstill:
+      return "heat at standstill for five minutes, then rest";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
@@ -402,6 +422,7 @@ std::string untested_words(const attribution::UntestedEffect& untested) {
 std::string rivals_of(const diagnosis::Experiment& experiment) { return fmt::format("{} or {}", experiment.effect, experiment.rival); }
 
 std::string experiment_words(const diagnosis::Experiment& experiment) {
+  const std::string_view what = experiment.planned ? run_words(*experiment.planned) : experiment.other;
   std::vector<std::string> levels;
   if (experiment.most_A) {
     levels.push_back(base::significant(*experiment.most_A, 2) + " A");
@@ -409,9 +430,8 @@ std::string experiment_words(const diagnosis::Experiment& experiment) {
   if (experiment.most_rad_per_s) {
     levels.push_back(base::significant(*experiment.most_rad_per_s, 2) + " rad/s");
   }
-  return levels.empty()
-             ? experiment.what
-             : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", experiment.what, fmt::join(levels, " and "));
+  return levels.empty() ? std::string(what)
+                        : fmt::format("{}; with at most {} the motor gets no hotter than in these runs", what, fmt::join(levels, " and "));
 }
 
 std::vector<Note> diagnosis_notes(const diagnosis::DiagnosisAnswer& answer, std::span<const recording::LogReading> readings) {

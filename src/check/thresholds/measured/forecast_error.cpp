@@ -42,8 +42,8 @@ Measured measure_forecast_error(const Check& check, Computations& /*computations
 /// A model that is wrong by the whole range of the motor's temperatures predicts nothing.
 std::optional<LoosestLimit> whole_range(const Check& check) {
   constexpr double kUsualAir_C = 25.0;
-  return check.motor ? std::optional<LoosestLimit>({check.motor->nominal.winding_limit_C - check.air_C.value_or(kUsualAir_C),
-                                                    "the motor's range from the air to its winding limit", true})
+  return check.motor ? std::optional<LoosestLimit>(
+                           {check.motor->nominal.winding_limit_C - check.air_C.value_or(kUsualAir_C), LoosestBy::temperature_range, true})
                      : std::nullopt;
 }
 
