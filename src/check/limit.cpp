@@ -185,12 +185,14 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
                                                measured.interval_width_value, type.unit == "degC" ? kLeastRise_K : 0.0});
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = type.is_whole ? 1.0 : step_of(limit - in_unit(measured.origin_value, type.unit, unit));
-  const double most = std::isfinite(type.range.high) ? in_unit(type.range.high, type.unit, unit) : std::numeric_limits<double>::infinity();
+  const auto end_of_range = [&](double value) { return std::isfinite(value) ? in_unit(value, type.unit, unit) : value; };
+  const double least = end_of_range(type.range.low);
+  const double most = end_of_range(type.range.high);
   const double rounded = rounded_away(limit, step, is_up);
-  std::string text = text_of(std::min(rounded, most));
+  std::string text = text_of(std::clamp(rounded, least, most));
   // With little room, the rounding to six digits may put the limit on the wrong side of the value.
   if (!keeps(type.direction, measured.value, parse_limit(text, type).value)) {
-    text = text_of(std::min(is_up ? rounded + step : rounded - step, most));
+    text = text_of(std::clamp(is_up ? rounded + step : rounded - step, least, most));
   }
   return text;
 }

@@ -46,12 +46,44 @@ double worse_end(const AnswerNumber& number, Bound direction) {
                                        : number.interval->low.value_or(-kNone);
 }
 
+/// Returns the last key of the number's place.
+std::string_view key_of(const AnswerNumber& number) { return std::string_view(number.name).substr(number.name.rfind('.') + 1); }
+
+/// Returns the range that numbers of this name, unit and kind have in every answer.
+base::Range possible_range(const AnswerNumber& number) {
+  const auto has = [&number](std::string_view part) { return number.name.find(part) != std::string::npos; };
+  const bool is_pure = number.unit.empty() && !number.is_whole;
+  if (is_pure && (has("probability") || has("share") || has("coverage")) && number.value >= 0.0 && number.value <= 1.0) {
+    return base::Range::between(0.0, 1.0);
+  }
+  const std::string_view key = key_of(number);
+  const bool is_size = key.find("rms") != std::string_view::npos || key.find("max_abs") != std::string_view::npos ||
+                       key.find("distance") != std::string_view::npos;
+  const bool is_duration = number.unit == "s" && !has("offset");
+  return number.value >= 0.0 && (number.is_whole || is_size || is_duration) ? base::Range::non_negative() : base::Range();
+}
+
+/// Narrows the limit to what --update may write: a limit at the end of the possible range cannot fail.
+void set_possible(Limit& limit, const base::Range& possible) {
+  const auto own = std::make_shared<NumberType>(*limit.own);
+  own->type.name = own->name;
+  own->type.unit = own->unit;
+  own->type.example = own->example;
+  own->type.range = possible;
+  if (own->type.direction == Bound::at_least && std::isfinite(possible.low)) {
+    own->type.loosest = [](const Check&) -> std::optional<LoosestLimit> { return LoosestLimit{0.0, LoosestBy::smallest_value, true}; };
+  } else if (own->type.direction == Bound::at_most && std::isfinite(possible.high)) {
+    own->type.loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); };
+  }
+  limit.type = &own->type;
+  limit.own = own;
+}
+
 Compared compared_part(const AnswerNumber& number) {
   if (number.interval) {
     return Compared::interval;
   }
-  const std::string_view name = number.name;
-  const std::string_view key = name.substr(name.rfind('.') + 1);
+  const std::string_view key = key_of(number);
   if (key.size() == 3 && key[0] == 'p' && std::isdigit(static_cast<unsigned char>(key[1])) != 0) {
     return Compared::percentile;
   }
@@ -125,8 +157,11 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
     throw NotEvaluated(LimitInvalid{parsed.problem});
   }
   limit.value = parsed.value;
-  // Only now: a fraction as the limit of a count is permitted, but --update writes none.
+  // Only now: a limit that cannot fail, or a fraction as the limit of a count, is permitted, but --update writes none.
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share, worst.is_whole);
+  if (const base::Range possible = possible_range(worst); std::isfinite(possible.low)) {
+    set_possible(limit, possible);
+  }
   const double value = worse_end(worst, direction);
   if (worst.interval && !std::isfinite(value)) {
     throw NotEvaluated(IntervalUnbounded{worst.name});

@@ -220,15 +220,16 @@ TEST_F(CommandChecks, NullThatTheAnswerDoesNotExplainIsNoTime) {
 }
 
 TEST_F(CommandChecks, NullOfARestIsNever) {
-  std::vector<Outcome> all = outcomes("\"rest_of_hot_motor.5min.rest_all_s\" = \"at most 600 s\"\n\"rest_of_hot_motor.5min.rest_half_s\" = \"at most 600 s\"\n");
+  std::vector<Outcome> all =
+      outcomes("\"rest_of_hot_motor.5min.rest_all_s\" = \"at most 600 s\"\n\"rest_of_hot_motor.5min.rest_half_s\" = \"at most 600 s\"\n");
   EXPECT_FALSE(all[0].passed());
   EXPECT_TRUE(all[0].measured->is_never);
   EXPECT_TRUE(all[1].passed());
 }
 
 TEST_F(CommandChecks, UpdateWritesWholeNumbersForCounts) {
-  std::vector<Outcome> all = outcomes(
-      "over = \"at most 1\"\n\"error.winding_C.samples\" = \"at least 1000\"\nplanners.fast.distance_m = \"at most 1 m\"\n");
+  std::vector<Outcome> all =
+      outcomes("over = \"at most 1\"\n\"error.winding_C.samples\" = \"at least 1000\"\nplanners.fast.distance_m = \"at most 1 m\"\n");
   EXPECT_FALSE(all[0].passed() || all[1].passed() || all[2].passed());
   const std::string updated = with_new_limits(text_, all, 0.05);
   EXPECT_THAT(updated, HasSubstr("over = \"at most 3\""));
@@ -318,6 +319,30 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
   EXPECT_THAT(after, HasSubstr("value\" = \"at most 0.0315 V s/rad\"\n")) << "5 % of the end of the interval, which is more than its width";
   EXPECT_THAT(after, HasSubstr("\"drift_K.value\" = \"at most 0.293 K\"\n")) << "5 % of the width of the interval";
   EXPECT_TRUE(std::ranges::all_of(all, &Outcome::passed));
+}
+
+// Such a limit would look like a check and check nothing.
+TEST_F(CommandChecks, UpdateWritesNoLimitThatCannotFail) {
+  std::vector<Outcome> all = outcomes(
+      "coverage_90.winding_C = \"at most 95 %\"\n"
+      "probability_over_limit = \"at least 0.1 %\"\n"
+      "idle_s = \"at least 0 s\"\n"
+      "over = \"at least 1\"\n"
+      "\"limited_s.voltage\" = \"at least 1 s\"\n"
+      "\"drift_K.value\" = \"at least -9 K\"\n");
+  const std::string after = with_new_limits(text_, all, 2.0);
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 4U}) {
+    EXPECT_TRUE(std::holds_alternative<Looseness>(all[i].not_rewritten.value())) << all[i].limit.type->name;
+  }
+  EXPECT_THAT(after, HasSubstr("coverage_90.winding_C = \"at most 95 %\"\n"));
+  EXPECT_THAT(after, HasSubstr("idle_s = \"at least 0 s\"\n"));
+  EXPECT_EQ(problem_of(std::get<Looseness>(*all[0].not_rewritten), *all[0].limit.type),
+            "\"at most 100 %\" is looser than the largest share that a limit may permit, 99.9 %; expected that or a tighter limit");
+  EXPECT_EQ(problem_of(std::get<Looseness>(*all[4].not_rewritten), *all[4].limit.type),
+            "\"at least 0 s\" holds always: the smallest possible value is 0 s; expected a tighter limit");
+  EXPECT_FALSE(all[5].not_rewritten) << "a difference of temperatures may be negative";
+  all = outcomes("coverage_90.winding_C = \"at most 95 %\"\n\"limited_s.voltage\" = \"at least 1 s\"\n");
+  EXPECT_THAT(with_new_limits(text_, all, 0.05), testing::AllOf(HasSubstr("at most 97.7 %"), HasSubstr("at least 2.85 s")));
 }
 
 TEST(CommandWords, AreSplitAtSpacesOutsideQuotes) {
