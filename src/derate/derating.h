@@ -77,6 +77,8 @@ struct Derating {
   double reachable_speed_rad_per_s = 0.0;
   /// Default tolerances of values for which the motor's file gives none.
   std::vector<motor::DefaultSpread> default_spreads = {};
+  /// MotorFit::heat_input if it is from measured power, which the firmware does not know.
+  std::optional<motor::HeatInput> measured_power = {};
   std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee
   bool is_brushless = true;
   double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: heating current per equivalent DC current

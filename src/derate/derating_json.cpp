@@ -244,6 +244,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"limp_current_A", rounded(limp_current_A(derating), 4)},
           {"conditions", derating.assumed},
           {"default_spreads", default_spreads(derating)},
+          {"measured_power", derating.measured_power ? Json(motor::name_of(*derating.measured_power)) : Json()},
           {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
           {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
           {"signals", signals},

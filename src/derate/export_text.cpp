@@ -40,13 +40,21 @@ std::string confidence_text(const Derating& derating, const Guarantee& checked) 
       derating.uses.size(), checked.over, checked.samples);
 }
 
-std::string unmodelled_heat_text(const Derating& derating) {
-  return derating.unmodelled_heat_share
-             ? fmt::format(
-                   "DOUBTFUL: the calibration found heat that the model lacks, {:.2g} % of the mean heat or more. The guarantee does "
-                   "not cover it.",
-                   100.0 * *derating.unmodelled_heat_share)
-             : std::string();
+std::vector<std::string> fit_warnings(const Derating& derating) {
+  std::vector<std::string> lines;
+  if (derating.measured_power) {
+    lines.push_back(fmt::format(
+        "DOUBTFUL: the thermal values were fitted to heat from measured power ({}), which the firmware does not measure. A loss "
+        "that only the power showed is left out, so the guard may allow too much current.",
+        motor::name_of(*derating.measured_power)));
+  }
+  if (derating.unmodelled_heat_share) {
+    lines.push_back(
+        fmt::format("DOUBTFUL: the calibration found heat that the model lacks, {:.2g} % of the mean heat or more. The guarantee does "
+                    "not cover it.",
+                    100.0 * *derating.unmodelled_heat_share));
+  }
+  return lines;
 }
 
 std::string provenance_lines(const Derating& derating, std::string_view comment) {
@@ -61,8 +69,8 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
       derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       confidence_text(derating, derating.guarantee));
-  if (const std::string lacking = unmodelled_heat_text(derating); !lacking.empty()) {
-    text += fmt::format("{} {}\n", comment, lacking);
+  for (const std::string& each : fit_warnings(derating)) {
+    text += fmt::format("{} {}\n", comment, each);
   }
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format("{} Valid only if {} is {} (--condition).\n", comment, in_one_line(key), in_one_line(value));

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "derate/ramp.h"
 
@@ -21,8 +22,8 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
 /// one SensorPlan::guarantee.
 std::string confidence_text(const Derating& derating, const Guarantee& checked);
 
-/// Returns one line about heat that the calibrated model lacks; empty if there is none.
-std::string unmodelled_heat_text(const Derating& derating);
+/// Returns a line for each reason why the fitted values of the motor's file may lack heat, which the guarantee does not cover.
+std::vector<std::string> fit_warnings(const Derating& derating);
 
 /// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
 /// the id is empty or begins with a digit.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/quantity.h"
 #include "derate/observer.h"
 #include "robot/assumed_friction.h"
 
@@ -64,6 +65,20 @@ std::string say(const ConditionStated& of) {
   return fmt::format("the guard is valid only if {} is {}, as stated with --condition", of.key, of.value);
 }
 
+std::string say(const FittedToPower& of) {
+  return fmt::format(
+      "the guard may allow too much current, because the thermal values were fitted to heat from measured power ({}), which the core does "
+      "not measure: a loss that only the power showed is left out",
+      motor::name_of(of.heat));
+}
+
+std::string say(const HeatUnmodelled& of) {
+  return fmt::format(
+      "the guard may allow too much current, because the calibration found heat that the model lacks, {} % of the mean heat of its runs or "
+      "more; `heatsoak diagnose` searches for the missing effect",
+      base::significant(100.0 * of.share, 2));
+}
+
 std::string say(const ShadowModeChosen& /*of*/) {
   return "the guard limits no current, so a motor can overheat: --shadow only counts what it would have limited; generate the core again "
          "without --shadow before a match";
@@ -106,12 +121,23 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
   for (const auto& [key, value] : motor.assumed) {
     notes.emplace_back(ConditionStated{key, value});
   }
+  if (derating.measured_power) {
+    notes.emplace_back(FittedToPower{*derating.measured_power});
+  }
+  if (derating.unmodelled_heat_share) {
+    notes.emplace_back(HeatUnmodelled{*derating.unmodelled_heat_share});
+  }
   constexpr double kLarge_share = 0.25;
   const double room_K = derating.rules.limits.winding_C - derating.rules.hottest_ambient_C;
   if (braking_reserve_K > kLarge_share * room_K) {
     notes.emplace_back(StopTakesCurrent{braking_reserve_K, room_K, derating.rules.hottest_ambient_C});
   }
   return notes;
+}
+
+bool is_unsafe(const CoreNote& note) {
+  return std::holds_alternative<FittedToPower>(note) || std::holds_alternative<HeatUnmodelled>(note) ||
+         std::holds_alternative<ShadowModeChosen>(note);
 }
 
 std::string to_string(const CoreNote& note) {

@@ -48,14 +48,25 @@ struct StopTakesCurrent {
   double room_K = 0.0;  ///< from the hottest air to the winding limit
   double hottest_ambient_C = 0.0;
 };
+/// The thermal values of the motor's file were fitted to heat from measured power, which the core does not measure.
+struct FittedToPower {
+  motor::HeatInput heat{};
+};
+/// The calibration of the motor's file found heat that the model lacks.
+struct HeatUnmodelled {
+  double share = 0.0;  ///< MotorFit::unmodelled_heat_share
+};
 /// The core was generated with --shadow.
 struct ShadowModeChosen {};
 using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
-                              ConditionStated, StopTakesCurrent, ShadowModeChosen>;
+                              ConditionStated, StopTakesCurrent, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
 
 /// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,
                                double braking_reserve_K);
+
+/// Returns whether the finding means that a motor can overheat although the guard works.
+bool is_unsafe(const CoreNote& note);
 
 /// Returns the finding as a sentence, for the README of the generated folder and for the answer of `generate core`.
 std::string to_string(const CoreNote& note);

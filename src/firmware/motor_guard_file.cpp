@@ -108,8 +108,8 @@ std::string guarantee(const derate::Derating& derating) {
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       checked.winding_most_C, derate::confidence_text(derating, checked));
-  if (const std::string lacking = derate::unmodelled_heat_text(derating); !lacking.empty()) {
-    text += fmt::format("// {}\n", lacking);
+  for (const std::string& each : derate::fit_warnings(derating)) {
+    text += fmt::format("// {}\n", each);
   }
   if (!derating.default_spreads.empty()) {
     text += fmt::format("// The motor's file gives no tolerance for these values; the drawn motors use defaults by origin:\n//   {}\n",

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 
 #include "present/check_words.h"
+#include "present/evaluation.h"
+#include "present/motor_notes.h"
 #include "present/robot_notes.h"
 
 namespace heatsoak::present {
@@ -44,6 +48,20 @@ Text status_cell(check::Status status) {
   return {};
 }
 
+/// Adds the notes on robots and motors, for each file once.
+void add_file_notes(Document& document, std::span<const check::Outcome> outcomes) {
+  std::set<std::filesystem::path> noted;
+  for (const check::Outcome& each : outcomes) {
+    const check::Check& of = *each.check;
+    if (of.robot && noted.insert(of.robot->file).second) {
+      add_robot_notes(document, *of.robot);
+    }
+    if (of.motor && noted.insert(of.motor->file).second) {
+      add_lines(document.notes, doubtful_fits({&*of.motor, 1}), Severity::warning);
+    }
+  }
+}
+
 }  // namespace
 
 Document check_document(std::span<const check::Outcome> outcomes, bool is_update, const std::vector<std::string>& files) {
@@ -65,11 +83,7 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
                                            {margin_words(each)},
                                            {std::move(why)}});
   }
-  for (const check::Outcome& each : outcomes) {
-    if (each.check->robot) {
-      add_robot_notes(document, *each.check->robot);
-    }
-  }
+  add_file_notes(document, outcomes);
   const auto loosened = std::ranges::count(outcomes, true, &check::Outcome::failed_before);
   if (loosened > 0) {
     document.add_note(Severity::warning, fmt::format("{} of the rewritten limits did not hold before. Read the difference before you "
@@ -77,6 +91,7 @@ Document check_document(std::span<const check::Outcome> outcomes, bool is_update
                                                      loosened));
   }
   document.data = check_json(outcomes, files);
+  add_notes(document.data, document.notes);
   return document;
 }
 

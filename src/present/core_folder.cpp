@@ -33,8 +33,7 @@ Document core_folder_document(const CoreInput& input, const firmware::GeneratedC
   add_labelled(table, "configuration", fmt::format("check sum {:08x}", folder.config_check_sum));
   document.tables.push_back(std::move(table));
   for (const firmware::CoreNote& note : folder.notes) {
-    const bool is_unsafe = std::holds_alternative<firmware::ShadowModeChosen>(note);
-    document.add_note(is_unsafe ? Severity::warning : Severity::note, to_string(note));
+    document.add_note(firmware::is_unsafe(note) ? Severity::warning : Severity::note, to_string(note));
   }
   add_robot_notes(document, robot);
   document.data = core_folder_json(input, core);

@@ -290,6 +290,7 @@ Document derating_document(const derate::DeratingJob& job, const derate::Deratin
     add_table_check(document, answer.derating, *answer.check);
     document.data["check"] = table_check_json(*answer.check);
   }
+  add_notes(document.data, document.notes);
   return document;
 }
 

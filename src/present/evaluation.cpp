@@ -175,10 +175,10 @@ std::vector<Text> headline(const simulate::EvaluationAnswer& answer) {
   const bool is_sampled = results.front().samples > 0;
   const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return each.verdict == select::Verdict::pass; });
   const std::string_view prefix = is_sampled ? "" : "No samples were drawn, so this is no verdict over tolerances: with nominal values ";
-  std::vector<Text> sentences{{fmt::format("{}{}.", prefix, counted_verdicts(answer, load_words(answer.duty))),
-                               !any_passes  ? Tone::bad
-                               : is_sampled ? Tone::good
-                                            : Tone::undecided}};
+  std::vector<Text> sentences{{fmt::format("{}{}.", prefix, counted_verdicts(answer, load_words(answer.duty))), !any_passes ? Tone::bad
+                                                                                                                : is_sampled
+                                                                                                                    ? Tone::good
+                                                                                                                    : Tone::undecided}};
   if (const std::string slip = slip_text(answer.demand); !slip.empty()) {
     sentences.push_back({fmt::format("This holds only for a robot that follows the plan exactly, but {}. --closed-loop, or `heatsoak "
                                      "simulate`, shows whether this robot can drive it.",
@@ -373,6 +373,7 @@ Document evaluation_document(const simulate::EvaluationAnswer& answer) {
                       "publishes them (`heatsoak describe MOTOR` shows each derivation). Calibrate on a bench before you rely on them.");
   }
   document.data = evaluation_json(answer);
+  add_notes(document.data, document.notes);
   return document;
 }
 

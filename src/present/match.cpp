@@ -9,6 +9,7 @@
 #include "present/evaluation.h"
 #include "present/motor_notes.h"
 #include "present/robot_notes.h"
+#include "present/shell_word.h"
 #include "present/verdict_words.h"
 
 namespace heatsoak::present {
@@ -146,19 +147,28 @@ Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMat
                            : is_of_stator
                                ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C)", score.stator_peak_C, *limits.stator_limit_C)
                                : winding;
-  return {fmt::format("In this one game (seed {}) the nominal {} {}{}{}.", answer.seed, answer.motor.id, answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "",
-                      what, peak),
+  return {fmt::format("In this one game (seed {}) the nominal {} {}{}{}.", answer.seed, answer.motor.id,
+                      answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "", what, peak),
           tone_of(driven.verdict)};
 }
 
+std::string evaluate_command(const GivenInputs& given) {
+  std::string words = fmt::format("heatsoak evaluate --robot {} --duty {}", shell_word(given.robot), shell_word(given.duty));
+  words += given.model.empty() ? fmt::format(" --motors {}", shell_word(given.motor)) : fmt::format(" --model {}", shell_word(given.model));
+  for (const auto& [key, value] : given.conditions) {
+    words += fmt::format(" --condition {}", shell_word(fmt::format("{}={}", key, value)));
+  }
+  return words + (given.database.empty() ? "" : fmt::format(" --db {}", shell_word(given.database)));
+}
+
 /// Names the command that gives the verdict: one run with nominal values leaves out all tolerances.
-void add_scope(Document& document, const robot::Robot& robot, const motor::Motor& motor, const duty::Duty& duty, bool is_game) {
-  document.add_note(Severity::scope,
-                    fmt::format("This is {} with nominal values and no verdict over tolerances. `heatsoak evaluate --robot {} --duty {} "
-                                "--motors {}` gives it; {}.",
-                                is_game ? "one game" : "one run", robot.id, duty.id, motor.id,
-                                is_game ? "there the plan is followed exactly, so its temperatures differ, and --closed-loop states by how much"
-                                        : "its nominal temperatures are the same"));
+void add_scope(Document& document, const GivenInputs& given, bool is_game) {
+  document.add_note(
+      Severity::scope,
+      fmt::format("This is {} with nominal values and no verdict over tolerances. `{}` gives it; {}.", is_game ? "one game" : "one run",
+                  evaluate_command(given),
+                  is_game ? "there the plan is followed exactly, so its temperatures differ, and --closed-loop states by how much"
+                          : "its nominal temperatures are the same"));
 }
 
 std::string_view verb_of(select::Verdict verdict) {
@@ -182,7 +192,7 @@ std::span<const EnergyPart> energy_parts() {
   return kParts;
 }
 
-Document match_document(const simulate::MatchSimulation& answer) {
+Document match_document(const simulate::MatchSimulation& answer, const GivenInputs& given) {
   Document document{.headline = {},
                     .paragraphs = {fmt::format(
                         "{} on {} as {}, seed {}: closed loop of {} at 1 kHz with the drive core, {}, {} thermal data. The load is {}.",
@@ -193,7 +203,7 @@ Document match_document(const simulate::MatchSimulation& answer) {
                                                               simulate::radio_of(answer.robot).packet_rate_Hz),
                         motor::data_quality(answer.motor), answer.duty.origin)},
                     .tables = {score_table(answer), energy_table(answer)}};
-  add_scope(document, answer.robot, answer.motor, answer.duty, true);
+  add_scope(document, given, true);
   for (const simulate::DrivenMatch& each : answer.runs) {
     document.headline.push_back(sentence(answer, each));
     if (const std::optional<simulate::DriveProblem> problem = simulate::drive_problem(each.run.score);
@@ -212,10 +222,11 @@ Document match_document(const simulate::MatchSimulation& answer) {
   }
   add_assumed_friction(document, answer.robot);
   document.data = match_json(answer);
+  add_notes(document.data, document.notes);
   return document;
 }
 
-Document load_simulation_document(const select::LoadSimulation& simulation) {
+Document load_simulation_document(const select::LoadSimulation& simulation, const GivenInputs& given) {
   const auto& [robot, motor, duty, duration_s, result, trace] = simulation;
   Document document{
       .headline = {{fmt::format("In this one run the nominal {} {} {}: winding peak {:.1f} °C (limit {:.0f} °C).", motor.id,
@@ -232,11 +243,12 @@ Document load_simulation_document(const select::LoadSimulation& simulation) {
   }
   table.rows.push_back({{"stored in the motor"}, {""}, {fmt::format("{:+.3f}", trace.stored_W)}});
   document.tables.push_back(std::move(table));
-  add_scope(document, robot, motor, duty, false);
+  add_scope(document, given, false);
   add_lines(document.notes, why_infeasible(result, robot), Severity::warning);
   add_robot_notes(document, robot);
   add_motor_notes(document, {&motor, 1});
   document.data = load_simulation_json(simulation);
+  add_notes(document.data, document.notes);
   return document;
 }
 

@@ -1,7 +1,9 @@
 // Documents and JSON of `simulate`: a match in the closed loop, or one motor under a prescribed load.
 #pragma once
 
+#include <map>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "present/document.h"
@@ -11,7 +13,17 @@
 
 namespace heatsoak::present {
 
-Document match_document(const simulate::MatchSimulation& match);
+/// Words of the user's command, ids or files, that the suggested command repeats.
+struct GivenInputs {
+  std::string robot;
+  std::string duty;
+  std::string motor = {};     ///< empty if `model` is given
+  std::string model = {};     ///< empty if `motor` is given
+  std::string database = {};  ///< folder of --db; may be empty
+  std::map<std::string, std::string> conditions = {};
+};
+
+Document match_document(const simulate::MatchSimulation& match, const GivenInputs& given);
 Json match_json(const simulate::MatchSimulation& match);
 
 /// One part of the energy that left the battery.
@@ -21,7 +33,7 @@ struct EnergyPart {
 };
 std::span<const EnergyPart> energy_parts();
 
-Document load_simulation_document(const select::LoadSimulation& simulation);
+Document load_simulation_document(const select::LoadSimulation& simulation, const GivenInputs& given);
 Json load_simulation_json(const select::LoadSimulation& simulation);
 
 }  // namespace heatsoak::present

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "base/quantity.h"
 #include "motor/conditions.h"
 #include "motor/default_spread.h"
+#include "motor/measured_power.h"
 #include "present/evaluation.h"
 
 namespace heatsoak::present {
@@ -76,12 +78,12 @@ void add_motor_notes(Document& document, std::span<const motor::Motor> motors, N
 std::string doubtful_fits(std::span<const motor::Motor> motors) {
   std::string text;
   for (const motor::Motor& motor : motors) {
-    if (motor.fit && (motor.fit->heat_input == motor::HeatInput::input_power || motor.fit->heat_input == motor::HeatInput::power_balance)) {
+    if (const std::optional<motor::HeatInput> heat = motor::measured_power(motor)) {
       text += fmt::format(
           "{}: the thermal values were fitted to heat from measured power ({}). Here no power is measured: the heat is I²·R and the losses "
           "of the motor file. A loss that only the power showed, such as that of the driver or of hot magnets, is left out, and "
           "temperatures may be too low\n",
-          motor.id, motor::name_of(*motor.fit->heat_input));
+          motor.id, motor::name_of(*heat));
     }
     if (motor.fit && motor.fit->unmodelled_heat_share) {
       text += fmt::format(

@@ -63,6 +63,7 @@ Document steady_document(const motor::OnOffAnswer& answer) {
   }
   add_motor_notes(document, {&answer.motor, 1});
   document.data = steady_json(answer);
+  add_notes(document.data, document.notes);
   return document;
 }
 

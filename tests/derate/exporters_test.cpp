@@ -14,6 +14,7 @@
 #include "base/version.h"
 #include "exported_motor.h"
 #include "exported_text.h"
+#include "motor/measured_power.h"
 #include "unpacked.h"
 
 namespace heatsoak::derate {
@@ -57,6 +58,26 @@ TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   EXPECT_EQ(guarantee["least_samples"], 59);
   EXPECT_NEAR(guarantee["least_kept_share"].get<double>(), checked.least_kept_share, 1e-4);
   EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
+}
+
+TEST(Exporters, FitsThatLackHeatAreDoubtful) {
+  motor::Motor motor = ecx_32();
+  motor.fit = motor::MotorFit{};
+  EXPECT_EQ(motor::measured_power(motor), std::nullopt);
+  motor.fit->heat_input = motor::HeatInput::current;
+  EXPECT_EQ(motor::measured_power(motor), std::nullopt);
+  motor.fit->heat_input = motor::HeatInput::input_power;
+  Derating doubtful = ecx_derating();
+  doubtful.measured_power = motor::measured_power(motor);
+  doubtful.unmodelled_heat_share = 0.08;
+  for (const char* form : {"c_header", "c_header_q15", "csv", "simplefoc"}) {
+    const std::string text = exported(form, doubtful);
+    EXPECT_THAT(text, HasSubstr("DOUBTFUL: the thermal values were fitted to heat from measured power (input_power)")) << form;
+    EXPECT_THAT(text, HasSubstr("DOUBTFUL: the calibration found heat that the model lacks, 8 %")) << form;
+    EXPECT_EQ(exported(form).find("DOUBTFUL"), std::string::npos) << form;
+  }
+  EXPECT_EQ(nlohmann::json::parse(exported("json", doubtful))["measured_power"], "input_power");
+  EXPECT_TRUE(nlohmann::json::parse(exported("json"))["measured_power"].is_null());
 }
 
 TEST(Exporters, InputHashFollowsTheOptions) {

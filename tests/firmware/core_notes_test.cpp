@@ -60,8 +60,26 @@ TEST(CoreNotes, StatedConditionsAreNoted) {
                   testing::AllOf(Field(&ConditionStated::key, "mounting"), Field(&ConditionStated::value, "flange")))));
 }
 
+TEST(CoreNotes, FitsThatLackHeatAreNotedAndUnsafe) {
+  const motor::Motor motor = ecx_32();
+  derate::Derating derating = any_derating(motor);
+  derating.measured_power = motor::HeatInput::power_balance;
+  derating.unmodelled_heat_share = 0.08;
+  const std::vector<CoreNote> notes = notes_on(twente(), motor, derating, 0.0);
+  EXPECT_THAT(notes, ElementsAre(VariantWith<FittedToPower>(Field(&FittedToPower::heat, motor::HeatInput::power_balance)),
+                                 VariantWith<HeatUnmodelled>(Field(&HeatUnmodelled::share, 0.08))));
+  EXPECT_THAT(notes, testing::Each(testing::Truly(is_unsafe)));
+  EXPECT_FALSE(is_unsafe(FrictionUnknown{"mine.toml"}));
+}
+
 TEST(CoreNotes, EveryKindHasItsSentence) {
   const std::vector<std::pair<CoreNote, const char*>> sentences{
+      {FittedToPower{motor::HeatInput::input_power},
+       "the guard may allow too much current, because the thermal values were fitted to heat from measured power (input_power), which the "
+       "core does not measure: a loss that only the power showed is left out"},
+      {HeatUnmodelled{0.08},
+       "the guard may allow too much current, because the calibration found heat that the model lacks, 8 % of the mean heat of its runs or "
+       "more; `heatsoak diagnose` searches for the missing effect"},
       {FrictionUnknown{"mine.toml"},
        "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: mine.toml has no [friction]; "
        "measure it with `heatsoak friction`"},

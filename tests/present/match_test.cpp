@@ -37,6 +37,8 @@ simulate::MatchSimulation both(simulate::DrivenMatch first, simulate::DrivenMatc
   return match;
 }
 
+const GivenInputs kGiven{.robot = "roboteam_twente_v2024", .duty = "division_a_match", .motor = "maxon_ecx_flat_32l_48v"};
+
 TEST(MatchAnswer, verdict_and_temperature_are_of_the_same_planner) {
   const simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
                                                driven(duty::Planner::bang_bang, select::Verdict::infeasible, 73.5));
@@ -51,7 +53,8 @@ TEST(MatchAnswer, verdict_and_temperature_are_of_the_same_planner) {
 
 TEST(MatchAnswer, has_one_sentence_per_planner_with_its_own_verdict) {
   const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
-                                                driven(duty::Planner::bang_bang, select::Verdict::infeasible, 73.5)));
+                                                driven(duty::Planner::bang_bang, select::Verdict::infeasible, 73.5)),
+                                           kGiven);
   ASSERT_EQ(document.headline.size(), 2U);
   EXPECT_EQ(document.headline[0].tone, Tone::good);
   EXPECT_EQ(document.headline[1].tone, Tone::bad);
@@ -60,7 +63,8 @@ TEST(MatchAnswer, has_one_sentence_per_planner_with_its_own_verdict) {
 // One game with nominal values is no verdict over tolerances, which `evaluate` gives.
 TEST(MatchAnswer, says_first_that_it_is_one_game_and_names_evaluate) {
   const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
-                                                driven(duty::Planner::bang_bang, select::Verdict::fail, 173.5)));
+                                                driven(duty::Planner::bang_bang, select::Verdict::fail, 173.5)),
+                                           kGiven);
   for (const Text& sentence : document.headline) {
     EXPECT_NE(sentence.words.find("In this one game (seed 1) the nominal"), std::string::npos) << sentence.words;
     EXPECT_EQ(sentence.words.find("passes"), std::string::npos) << sentence.words;
@@ -68,10 +72,26 @@ TEST(MatchAnswer, says_first_that_it_is_one_game_and_names_evaluate) {
   EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
 }
 
+TEST(MatchAnswer, repeats_the_inputs_as_the_user_gave_them) {
+  const simulate::MatchSimulation match =
+      both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5), driven(duty::Planner::bang_bang, select::Verdict::pass, 73.5));
+  const auto scope = [&match](const GivenInputs& given) { return by_urgency(match_document(match, given).notes).front().words; };
+  EXPECT_NE(scope(kGiven).find("--robot roboteam_twente_v2024 --duty division_a_match --motors maxon_ecx_flat_32l_48v`"),
+            std::string::npos);
+  EXPECT_NE(scope({.robot = "our robot.toml",
+                   .duty = "match.toml",
+                   .model = "../fit/model.toml",
+                   .database = "db",
+                   .conditions = {{"cooling", "fan"}}})
+                .find("`heatsoak evaluate --robot 'our robot.toml' --duty match.toml --model ../fit/model.toml --condition 'cooling=fan' "
+                      "--db db`"),
+            std::string::npos);
+}
+
 TEST(LoadAnswer, says_first_that_mass_and_wheels_do_not_matter) {
   const select::LoadSimulation simulation = select::simulate_load(
       {.robot = twente(), .motor = ecx_32(), .duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml")});
-  const Document document = load_simulation_document(simulation);
+  const Document document = load_simulation_document(simulation, kGiven);
   EXPECT_NE(document.headline.front().words.find("mass and wheel size of the robot do not matter"), std::string::npos);
   EXPECT_NE(document.headline.front().words.find("nominal"), std::string::npos);
   EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
@@ -86,8 +106,9 @@ TEST(MatchAnswer, an_exceeded_limit_decides_before_a_match_that_was_not_driven) 
 
 // A row is read alone in JSON, in a report, or by a screen reader.
 TEST(MatchAnswer, no_row_leans_on_the_row_above) {
-  const Document document = match_document(both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5),
-                                                driven(duty::Planner::bang_bang, select::Verdict::pass, 73.5)));
+  const Document document = match_document(
+      both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5), driven(duty::Planner::bang_bang, select::Verdict::pass, 73.5)),
+      kGiven);
   for (const std::vector<Text>& row : document.tables.front().rows) {
     EXPECT_NE(row.front().words.front(), ' ') << row.front().words;
   }

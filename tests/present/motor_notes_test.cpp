@@ -4,9 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "check/threshold.h"
 #include "derate/guarded_motor.h"
 #include "motor/read_motor.h"
-#include "support/source_folder.h"
+#include "present/check.h"
+#include "present/evaluation.h"
+#include "present/match.h"
+#include "present/steady.h"
+#include "support/shipped.h"
 
 namespace heatsoak::present {
 namespace {
@@ -46,6 +54,34 @@ TEST(DoubtfulFits, TellWhenThermalValuesHoldForMeasuredPower) {
   }
   motor.fit->heat_input.reset();
   EXPECT_EQ(doubtful_fits({&motor, 1}), "");
+}
+
+// Programs read the JSON only.
+TEST(DoubtfulFits, AreWarningsInTheJsonOfEveryPrediction) {
+  motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  motor.fit = motor::MotorFit{};
+  motor.fit->heat_input = motor::HeatInput::input_power;
+  const duty::Duty duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml");
+  const robot::Robot robot = shipped_robot("roboteam_twente_v2024");
+  check::Check check;
+  check.motor = motor;
+  const std::vector<check::Outcome> outcomes(2, {.check = &check, .limit = {check::find_threshold("current_margin"), 1.0, "", "", {}}});
+  simulate::EvaluationJob job;
+  job.robot = robot;
+  job.duty = duty;
+  job.motors = {motor};
+  job.samples = 0;
+  for (const Document& document :
+       {steady_document(motor::under_on_off_current(motor, {.current_on_A = 2.0, .time_on_s = 1.0, .time_off_s = 1.0, .ambient_C = 25.0})),
+        evaluation_document(simulate::run_evaluation(job)),
+        load_simulation_document(select::simulate_load({.robot = robot, .motor = motor, .duty = duty}), {}),
+        check_document(outcomes, false)}) {
+    EXPECT_EQ(std::ranges::count_if(
+                  document.data.at("warnings"),
+                  [](const Json& each) { return each.get<std::string>().find("fitted to heat from measured power") != std::string::npos; }),
+              1)
+        << document.data.at("schema");
+  }
 }
 
 TEST(MotorNotes, TheNeighbourIsKnownOnlyWithAllMotorsOfARobot) {

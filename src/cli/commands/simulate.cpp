@@ -38,6 +38,15 @@ struct SimulateOptions {
   std::map<std::string, std::string> conditions;
 };
 
+present::GivenInputs given(const SimulateOptions& options, const Session& session) {
+  return {.robot = options.robot,
+          .duty = options.duty,
+          .motor = options.motor,
+          .model = options.model,
+          .database = session.database(),
+          .conditions = options.conditions};
+}
+
 /// `make` returns the chart; it is called only if the chart is requested.
 template <class Make>
 void show(present::Document document, const SimulateOptions& options, Session& session, const Make& make) {
@@ -66,7 +75,7 @@ base::ExitCode run_load(const SimulateOptions& options, select::LoadJob job, Ses
   if (!options.out.empty()) {
     session.write(options.out, select::to_csv(simulation.trace));
   }
-  show(present::load_simulation_document(simulation), options, session,
+  show(present::load_simulation_document(simulation, given(options, session)), options, session,
        [&] { return present::verdict_chart({simulation.result}, simulation.robot, simulation.duty); });
   return simulation.result.verdict == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
@@ -90,7 +99,7 @@ base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job,
   if (job.with_table) {
     session.write(options.out, std::move(match.runs.front().csv));
   }
-  show(present::match_document(match), options, session, [&] { return present::match_chart(match); });
+  show(present::match_document(match, given(options, session)), options, session, [&] { return present::match_chart(match); });
   return match.verdict() == select::Verdict::pass ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 

@@ -12,8 +12,10 @@ namespace heatsoak::derate::c_header {
 namespace {
 
 std::string conditions_text(const Derating& derating) {
-  const std::string lacking = unmodelled_heat_text(derating);
-  std::string text = lacking.empty() ? "" : fmt::format(" * {}\n", lacking);
+  std::string text;
+  for (const std::string& each : fit_warnings(derating)) {
+    text += fmt::format(" * {}\n", each);
+  }
   for (const auto& [key, value] : derating.assumed) {
     text += fmt::format(" * VALID ONLY IF {} is {}: stated with --condition, which selected effects of the motor's file.\n",
                         in_comment(key), in_comment(value));
