@@ -383,6 +383,7 @@ Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const
                   .uses = std::move(promise.uses),
                   .reachable_speed_rad_per_s = search.reachable().most_speed_rad_per_s,
                   .default_spreads = motor::default_spreads(as_written),
+                  .doubtful_values = motor::doubtful_values(as_written),
                   .measured_power = motor::measured_power(motor),
                   .unmodelled_heat_share = motor.fit ? motor.fit->unmodelled_heat_share : std::nullopt,
                   .is_brushless = motor.type != "brushed",

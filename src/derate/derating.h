@@ -10,6 +10,7 @@
 #include "derate/provenance.h"
 #include "derate/sensed/sensor.h"
 #include "motor/default_spread.h"
+#include "motor/lint.h"
 
 namespace heatsoak::derate {
 
@@ -77,6 +78,7 @@ struct Derating {
   double reachable_speed_rad_per_s = 0.0;
   /// Default tolerances of values for which the motor's file gives none.
   std::vector<motor::DefaultSpread> default_spreads = {};
+  std::vector<motor::LintFinding> doubtful_values = {};  ///< motor::doubtful_values() of the motor's file
   /// MotorFit::heat_input if it is from measured power, which the firmware does not know.
   std::optional<motor::HeatInput> measured_power = {};
   std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee

@@ -95,6 +95,14 @@ Json observer_json(const Derating& derating) {
        rounded_to_12_digits(motor.thermal_time_constant_stator_s / motor.thermal_resistance_stator_ambient_K_per_W)}};
 }
 
+Json words_of(const std::vector<motor::LintFinding>& findings) {
+  Json all = Json::array();
+  for (const motor::LintFinding& each : findings) {
+    all.push_back(motor::words_of(each));
+  }
+  return all;
+}
+
 Json default_spreads(const Derating& derating) {
   Json rows = Json::array();
   for (const motor::DefaultSpread& each : derating.default_spreads) {
@@ -244,6 +252,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
           {"limp_current_A", rounded(limp_current_A(derating), 4)},
           {"conditions", derating.assumed},
           {"default_spreads", default_spreads(derating)},
+          {"doubtful_values", words_of(derating.doubtful_values)},
           {"measured_power", derating.measured_power ? Json(motor::name_of(*derating.measured_power)) : Json()},
           {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
           {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},

@@ -65,6 +65,11 @@ std::string say(const ConditionStated& of) {
   return fmt::format("the guard is valid only if {} is {}, as stated with --condition", of.key, of.value);
 }
 
+std::string say(const ValueDoubtful& of) {
+  return fmt::format("the guard may allow too much current, because a value of the motor's file is doubtful: {}",
+                     motor::words_of(of.finding));
+}
+
 std::string say(const FittedToPower& of) {
   return fmt::format(
       "the guard may allow too much current, because the thermal values were fitted to heat from measured power ({}), which the core does "
@@ -121,6 +126,9 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
   for (const auto& [key, value] : motor.assumed) {
     notes.emplace_back(ConditionStated{key, value});
   }
+  for (const motor::LintFinding& each : derating.doubtful_values) {
+    notes.emplace_back(ValueDoubtful{each});
+  }
   if (derating.measured_power) {
     notes.emplace_back(FittedToPower{*derating.measured_power});
   }
@@ -136,8 +144,8 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
 }
 
 bool is_unsafe(const CoreNote& note) {
-  return std::holds_alternative<FittedToPower>(note) || std::holds_alternative<HeatUnmodelled>(note) ||
-         std::holds_alternative<ShadowModeChosen>(note);
+  return std::holds_alternative<ValueDoubtful>(note) || std::holds_alternative<FittedToPower>(note) ||
+         std::holds_alternative<HeatUnmodelled>(note) || std::holds_alternative<ShadowModeChosen>(note);
 }
 
 std::string to_string(const CoreNote& note) {

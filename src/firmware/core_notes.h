@@ -48,6 +48,10 @@ struct StopTakesCurrent {
   double room_K = 0.0;  ///< from the hottest air to the winding limit
   double hottest_ambient_C = 0.0;
 };
+/// A value of the motor's file is unlikely, or an estimate contradicts it.
+struct ValueDoubtful {
+  motor::LintFinding finding;
+};
 /// The thermal values of the motor's file were fitted to heat from measured power, which the core does not measure.
 struct FittedToPower {
   motor::HeatInput heat{};
@@ -59,7 +63,7 @@ struct HeatUnmodelled {
 /// The core was generated with --shadow.
 struct ShadowModeChosen {};
 using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
-                              ConditionStated, StopTakesCurrent, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
+                              ConditionStated, StopTakesCurrent, ValueDoubtful, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
 
 /// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,

@@ -137,6 +137,14 @@ std::vector<LintFinding> lint(const Motor& file) {
   return list;
 }
 
+std::vector<LintFinding> doubtful_values(const Motor& motor) {
+  std::vector<LintFinding> findings = lint(motor);
+  std::erase_if(findings, [](const LintFinding& each) {
+    return each.level != LintFinding::Level::warning || each.what.words == LintWords::no_spread;
+  });
+  return findings;
+}
+
 void add_lint_errors(const Motor& motor, base::Diagnostics& diagnostics) {
   Motor checked = motor;
   if (!diagnostics.empty()) {

@@ -36,6 +36,10 @@ std::string words_of(const LintFinding& finding);
 /// Runs all checks; each uses only values that the file gives. A motor passes if there are no errors.
 std::vector<LintFinding> lint(const Motor& motor);
 
+/// Returns the warnings of lint() about values: unlikely ones, and those that an estimate contradicts. Commands accept such a file but state
+/// them. Missing spreads are not included, because defaults replace them.
+std::vector<LintFinding> doubtful_values(const Motor& motor);
+
 /// Adds the errors of lint() to `diagnostics`. If these already contain problems, the file was read incompletely: effects are then not
 /// checked, because they may name missing nodes. Not added: missing spreads, which defaults replace, and errors on lines that already have
 /// a problem.

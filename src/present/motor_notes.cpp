@@ -12,6 +12,7 @@
 #include "base/quantity.h"
 #include "motor/conditions.h"
 #include "motor/default_spread.h"
+#include "motor/lint.h"
 #include "motor/measured_power.h"
 #include "present/evaluation.h"
 
@@ -71,13 +72,16 @@ std::string inactive_effects(std::span<const motor::Motor> motors, Neighbours ne
 }
 
 void add_motor_notes(Document& document, std::span<const motor::Motor> motors, Neighbours neighbours) {
-  add_lines(document.notes, doubtful_fits(motors), Severity::warning);
+  add_lines(document.notes, doubts_about(motors), Severity::warning);
   add_lines(document.notes, inactive_effects(motors, neighbours), Severity::note);
 }
 
-std::string doubtful_fits(std::span<const motor::Motor> motors) {
+std::string doubts_about(std::span<const motor::Motor> motors) {
   std::string text;
   for (const motor::Motor& motor : motors) {
+    for (const motor::LintFinding& each : motor::doubtful_values(motor)) {
+      text += fmt::format("{}: {}\n", motor.id, motor::words_of(each));
+    }
     if (const std::optional<motor::HeatInput> heat = motor::measured_power(motor)) {
       text += fmt::format(
           "{}: the thermal values were fitted to heat from measured power ({}). Here no power is measured: the heat is I²·R and the losses "

@@ -60,7 +60,7 @@ TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
 }
 
-TEST(Exporters, FitsThatLackHeatAreDoubtful) {
+TEST(Exporters, DoubtsAreStated) {
   motor::Motor motor = ecx_32();
   motor.fit = motor::MotorFit{};
   EXPECT_EQ(motor::measured_power(motor), std::nullopt);
@@ -70,14 +70,19 @@ TEST(Exporters, FitsThatLackHeatAreDoubtful) {
   Derating doubtful = ecx_derating();
   doubtful.measured_power = motor::measured_power(motor);
   doubtful.unmodelled_heat_share = 0.08;
+  doubtful.doubtful_values = {
+      {motor::LintFinding::Level::warning, "required_values", {motor::LintWords::no_spread, {"a", "1 K/W"}}, {}, "a"}};
   for (const char* form : {"c_header", "c_header_q15", "csv", "simplefoc"}) {
     const std::string text = exported(form, doubtful);
     EXPECT_THAT(text, HasSubstr("DOUBTFUL: the thermal values were fitted to heat from measured power (input_power)")) << form;
     EXPECT_THAT(text, HasSubstr("DOUBTFUL: the calibration found heat that the model lacks, 8 %")) << form;
+    EXPECT_THAT(text, HasSubstr("DOUBTFUL: " + motor::words_of(doubtful.doubtful_values.front()))) << form;
     EXPECT_EQ(exported(form).find("DOUBTFUL"), std::string::npos) << form;
   }
   EXPECT_EQ(nlohmann::json::parse(exported("json", doubtful))["measured_power"], "input_power");
   EXPECT_TRUE(nlohmann::json::parse(exported("json"))["measured_power"].is_null());
+  EXPECT_EQ(nlohmann::json::parse(exported("json", doubtful))["doubtful_values"].size(), 1U);
+  EXPECT_TRUE(nlohmann::json::parse(exported("json"))["doubtful_values"].empty());
 }
 
 TEST(Exporters, InputHashFollowsTheOptions) {

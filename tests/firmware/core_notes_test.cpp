@@ -60,13 +60,15 @@ TEST(CoreNotes, StatedConditionsAreNoted) {
                   testing::AllOf(Field(&ConditionStated::key, "mounting"), Field(&ConditionStated::value, "flange")))));
 }
 
-TEST(CoreNotes, FitsThatLackHeatAreNotedAndUnsafe) {
+TEST(CoreNotes, DoubtsAreNotedAndUnsafe) {
   const motor::Motor motor = ecx_32();
   derate::Derating derating = any_derating(motor);
   derating.measured_power = motor::HeatInput::power_balance;
   derating.unmodelled_heat_share = 0.08;
+  derating.doubtful_values = {{}};
   const std::vector<CoreNote> notes = notes_on(twente(), motor, derating, 0.0);
-  EXPECT_THAT(notes, ElementsAre(VariantWith<FittedToPower>(Field(&FittedToPower::heat, motor::HeatInput::power_balance)),
+  EXPECT_THAT(notes, ElementsAre(VariantWith<ValueDoubtful>(testing::_),
+                                 VariantWith<FittedToPower>(Field(&FittedToPower::heat, motor::HeatInput::power_balance)),
                                  VariantWith<HeatUnmodelled>(Field(&HeatUnmodelled::share, 0.08))));
   EXPECT_THAT(notes, testing::Each(testing::Truly(is_unsafe)));
   EXPECT_FALSE(is_unsafe(FrictionUnknown{"mine.toml"}));
@@ -77,6 +79,9 @@ TEST(CoreNotes, EveryKindHasItsSentence) {
       {FittedToPower{motor::HeatInput::input_power},
        "the guard may allow too much current, because the thermal values were fitted to heat from measured power (input_power), which the "
        "core does not measure: a loss that only the power showed is left out"},
+      {ValueDoubtful{{{}, "density", {motor::LintWords::no_spread, {"mass", "1 kg"}}, {}, {}}},
+       "the guard may allow too much current, because a value of the motor's file is doubtful: density: mass of 1 kg has neither tolerance "
+       "nor range; expected one of the two (see motor_db/README.md). Until then a default by its origin is assumed"},
       {HeatUnmodelled{0.08},
        "the guard may allow too much current, because the calibration found heat that the model lacks, 8 % of the mean heat of its runs or "
        "more; `heatsoak diagnose` searches for the missing effect"},

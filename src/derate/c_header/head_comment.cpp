@@ -13,7 +13,7 @@ namespace {
 
 std::string conditions_text(const Derating& derating) {
   std::string text;
-  for (const std::string& each : fit_warnings(derating)) {
+  for (const std::string& each : doubts(derating)) {
     text += fmt::format(" * {}\n", each);
   }
   for (const auto& [key, value] : derating.assumed) {
