@@ -40,7 +40,7 @@ std::string confidence_text(const Derating& derating, const Guarantee& checked) 
       derating.uses.size(), checked.over, checked.samples);
 }
 
-std::vector<std::string> doubts(const Derating& derating) {
+std::vector<std::string> value_warnings(const Derating& derating) {
   std::vector<std::string> lines;
   for (const motor::LintFinding& each : derating.doubtful_values) {
     lines.push_back(fmt::format("DOUBTFUL: {}.", in_one_line(motor::words_of(each))));
@@ -72,7 +72,7 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
       derating.rules.limits.stator_C ? fmt::format(", stator limit {:.6g} degC", *derating.rules.limits.stator_C) : "",
       derating.options.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       confidence_text(derating, derating.guarantee));
-  for (const std::string& each : doubts(derating)) {
+  for (const std::string& each : value_warnings(derating)) {
     text += fmt::format("{} {}\n", comment, each);
   }
   for (const auto& [key, value] : derating.assumed) {

@@ -22,8 +22,8 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
 /// one SensorPlan::guarantee.
 std::string confidence_text(const Derating& derating, const Guarantee& checked);
 
-/// Returns a line for each reason to doubt the values of the motor's file: the guarantee holds for the motor that the file describes.
-std::vector<std::string> doubts(const Derating& derating);
+/// Returns a line for each reason why values of the motor's file may be wrong: the guarantee holds for the motor that the file describes.
+std::vector<std::string> value_warnings(const Derating& derating);
 
 /// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
 /// the id is empty or begins with a digit.

@@ -108,7 +108,7 @@ std::string guarantee(const derate::Derating& derating) {
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
       checked.winding_most_C, derate::confidence_text(derating, checked));
-  for (const std::string& each : derate::doubts(derating)) {
+  for (const std::string& each : derate::value_warnings(derating)) {
     text += fmt::format("// {}\n", each);
   }
   if (!derating.default_spreads.empty()) {

@@ -57,7 +57,7 @@ void add_file_notes(Document& document, std::span<const check::Outcome> outcomes
       add_robot_notes(document, *of.robot);
     }
     if (of.motor && noted.insert(of.motor->file).second) {
-      add_lines(document.notes, doubts_about({&*of.motor, 1}), Severity::warning);
+      add_lines(document.notes, value_warnings({&*of.motor, 1}), Severity::warning);
     }
   }
 }

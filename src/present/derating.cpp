@@ -214,7 +214,7 @@ Document document_of(const derate::Derating& derating, const motor::Motor& motor
   add_table_notes(document, derating);
   add_power_off_and_friction(document, derating);
   add_sensor(document, derating);
-  add_lines(document.notes, doubts_about({&motor, 1}), Severity::warning);
+  add_lines(document.notes, value_warnings({&motor, 1}), Severity::warning);
   add_lines(document.notes, default_spreads_text({&motor, 1}), Severity::note);
   add_lines(document.notes, columns_at_their_hottest({&motor, 1}) + effects_under_conditions({&motor, 1}), Severity::note);
   return document;

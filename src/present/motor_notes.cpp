@@ -72,11 +72,11 @@ std::string inactive_effects(std::span<const motor::Motor> motors, Neighbours ne
 }
 
 void add_motor_notes(Document& document, std::span<const motor::Motor> motors, Neighbours neighbours) {
-  add_lines(document.notes, doubts_about(motors), Severity::warning);
+  add_lines(document.notes, value_warnings(motors), Severity::warning);
   add_lines(document.notes, inactive_effects(motors, neighbours), Severity::note);
 }
 
-std::string doubts_about(std::span<const motor::Motor> motors) {
+std::string value_warnings(std::span<const motor::Motor> motors) {
   std::string text;
   for (const motor::Motor& motor : motors) {
     for (const motor::LintFinding& each : motor::doubtful_values(motor)) {

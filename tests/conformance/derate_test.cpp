@@ -114,6 +114,9 @@ TEST(DerateCommand, JsonFileIsTheAnswerAndNamesItsInputs) {
   ASSERT_EQ(done.exit_code, 0) << done.err;
   nlohmann::json answer = done.json();
   answer.erase("version");  // every answer on stdout has this key; the file has "program" instead
+  for (const char* const of_answers : {"notes", "warnings"}) {
+    EXPECT_EQ(answer.erase(of_answers), 1U) << of_answers;
+  }
   EXPECT_EQ(nlohmann::json::parse(content_of(folder.path() / "table.json")), answer);
   EXPECT_THAT(done.json()["program"].get<std::string>(), testing::StartsWith("heatsoak "));
   EXPECT_EQ(done.json()["input_hash"]["value"].get<std::string>().size(), 16U);

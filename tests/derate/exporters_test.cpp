@@ -60,7 +60,7 @@ TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   EXPECT_THAT(exported("csv"), HasSubstr("# Safety factor on heat"));
 }
 
-TEST(Exporters, DoubtsAreStated) {
+TEST(Exporters, DoubtfulValuesAreStated) {
   motor::Motor motor = ecx_32();
   motor.fit = motor::MotorFit{};
   EXPECT_EQ(motor::measured_power(motor), std::nullopt);

@@ -60,7 +60,7 @@ TEST(CoreNotes, StatedConditionsAreNoted) {
                   testing::AllOf(Field(&ConditionStated::key, "mounting"), Field(&ConditionStated::value, "flange")))));
 }
 
-TEST(CoreNotes, DoubtsAreNotedAndUnsafe) {
+TEST(CoreNotes, DoubtfulValuesAreNotedAndUnsafe) {
   const motor::Motor motor = ecx_32();
   derate::Derating derating = any_derating(motor);
   derating.measured_power = motor::HeatInput::power_balance;

@@ -46,14 +46,14 @@ TEST(DoubtfulFits, TellWhenThermalValuesHoldForMeasuredPower) {
   motor.fit = motor::MotorFit{};
   for (const motor::HeatInput heat : {motor::HeatInput::input_power, motor::HeatInput::power_balance}) {
     motor.fit->heat_input = heat;
-    EXPECT_THAT(doubts_about({&motor, 1}), AllOf(HasSubstr(std::string(motor::name_of(heat))), HasSubstr("may be too low")));
+    EXPECT_THAT(value_warnings({&motor, 1}), AllOf(HasSubstr(std::string(motor::name_of(heat))), HasSubstr("may be too low")));
   }
   for (const motor::HeatInput heat : {motor::HeatInput::current, motor::HeatInput::torque}) {
     motor.fit->heat_input = heat;
-    EXPECT_EQ(doubts_about({&motor, 1}), "");
+    EXPECT_EQ(value_warnings({&motor, 1}), "");
   }
   motor.fit->heat_input.reset();
-  EXPECT_EQ(doubts_about({&motor, 1}), "");
+  EXPECT_EQ(value_warnings({&motor, 1}), "");
 }
 
 // 0.15 K/W instead of 1.5 K/W: such a motor would pass everything.
@@ -61,7 +61,7 @@ TEST(DoubtfulValues, AreWarningsAboutThatMotor) {
   motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   motor.parameters.at("thermal_resistance_stator_ambient").value *= 0.01;
   motor::refresh_values(motor);
-  EXPECT_THAT(doubts_about({&motor, 1}),
+  EXPECT_THAT(value_warnings({&motor, 1}),
               AllOf(HasSubstr(motor.id), HasSubstr("thermal_resistance_stator_ambient"), HasSubstr("check both")));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 std::string conditions_text(const Derating& derating) {
   std::string text;
-  for (const std::string& each : doubts(derating)) {
+  for (const std::string& each : value_warnings(derating)) {
     text += fmt::format(" * {}\n", each);
   }
   for (const auto& [key, value] : derating.assumed) {
