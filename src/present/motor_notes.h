@@ -28,8 +28,8 @@ std::string columns_at_their_hottest(std::span<const motor::Motor> motors);
 /// Returns a line for each condition that was stated, and for each effect whose condition is unknown: it acts if it heats, not if it cools.
 std::string effects_under_conditions(std::span<const motor::Motor> motors);
 
-/// Returns a line for each reason why values of a motor's file may be wrong; empty if there is none: motor::doubtful_values(), a calibration
-/// that found heat that the model lacks, and a fit to heat from measured power, which no duty states.
+/// Returns a line for each reason why values of a motor's file may be wrong; empty if there is none: motor::doubtful_values(), a
+/// calibration that found heat that the model lacks, and a fit to heat from measured power, which no duty states.
 std::string value_warnings(std::span<const motor::Motor> motors);
 
 /// Returns a line for each motor with a value that got a default spread; empty if there is none.
