@@ -70,8 +70,9 @@ TEST(Exporters, DoubtfulValuesAreStated) {
   Derating doubtful = ecx_derating();
   doubtful.measured_power = motor::measured_power(motor);
   doubtful.unmodelled_heat_share = 0.08;
-  doubtful.doubtful_values = {
-      {motor::LintFinding::Level::warning, "required_values", {motor::LintWords::no_spread, {"a", "1 K/W"}}, {}, "a"}};
+  using motor::LintFact;
+  const motor::LintClause estimated{motor::LintWords::estimated, {LintFact(std::string("friction")), LintFact(std::string("1 K/W"))}};
+  doubtful.doubtful_values = {{motor::LintFinding::Level::warning, "estimates", estimated, {}, "friction"}};
   for (const char* form : {"c_header", "c_header_q15", "csv", "simplefoc"}) {
     const std::string text = exported(form, doubtful);
     EXPECT_THAT(text, HasSubstr("DOUBTFUL: the thermal values were fitted to heat from measured power (input_power)")) << form;

@@ -75,11 +75,13 @@ TEST(CoreNotes, DoubtfulValuesAreNotedAndUnsafe) {
 }
 
 TEST(CoreNotes, EveryKindHasItsSentence) {
+  using motor::LintFact;
   const std::vector<std::pair<CoreNote, const char*>> sentences{
       {FittedToPower{motor::HeatInput::input_power},
        "the guard may allow too much current, because the thermal values were fitted to heat from measured power (input_power), which the "
        "core does not measure: a loss that only the power showed is left out"},
-      {ValueDoubtful{{{}, "density", {motor::LintWords::no_spread, {"mass", "1 kg"}}, {}, {}}},
+      {ValueDoubtful{
+           {{}, "density", {motor::LintWords::no_spread, {LintFact(std::string("mass")), LintFact(std::string("1 kg"))}}, {}, {}}},
        "the guard may allow too much current, because a value of the motor's file is doubtful: density: mass of 1 kg has neither tolerance "
        "nor range; expected one of the two (see motor_db/README.md). Until then a default by its origin is assumed"},
       {HeatUnmodelled{0.08},
