@@ -89,6 +89,11 @@ struct Laws {
   void (*lanes)(const Situation<Lanes>&, HeatBook<Lanes>&) = nullptr;
   void (*tangent)(const Situation<Tangent>&, HeatBook<Tangent>&) = nullptr;
   void (*traced)(const Situation<Traced>&, HeatBook<Traced>&) = nullptr;
+
+  void book(const Situation<double>& x, HeatBook<double>& heat) const { one(x, heat); }
+  void book(const Situation<Lanes>& x, HeatBook<Lanes>& heat) const { lanes(x, heat); }
+  void book(const Situation<Tangent>& x, HeatBook<Tangent>& heat) const { tangent(x, heat); }
+  void book(const Situation<Traced>& x, HeatBook<Traced>& heat) const { traced(x, heat); }
 };
 
 /// Returns the law of an effect in all scalar types; it lives as long as the program.

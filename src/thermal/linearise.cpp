@@ -1,122 +1,75 @@
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <vector>
 
-#include "thermal/law.h"
+#include "thermal/evaluation.h"
 #include "thermal/linearised.h"
-#include "thermal/network.h"
 
 namespace heatsoak::thermal {
 namespace {
 
-constexpr int kMostRoles = Network::kMostRoles;
-constexpr int kMostParameters = Network::kMostParameters;
-
-/// Derivatives of the copper loss at this moment, for laws that depend on it.
-struct CopperGradient {
-  DriveStage::Places places;
-  double by_winding_W_per_K = 0.0;
-  double by_resistance_W_per_ohm = 0.0;
-  double by_coefficient_W_K = 0.0;
-};
-
 /// Scratch memory kept between calls: clearing unused derivatives would cost more than evaluating the laws.
 struct Workspace {
-  std::array<Tangent, kMostRoles> temperature_C;
-  std::array<Tangent, kMostParameters> parameter;
-  std::array<Tangent, kMostRoles> heat_W;
+  std::vector<Tangent> parameter;                          ///< of the network
+  std::array<Tangent, Network::kMostNodes> temperature_C;  ///< of the network's nodes, for the drive stage
+  std::array<Tangent, Network::kMostRoles> role_C;         ///< of one effect
+  std::array<Tangent, Network::kMostRoles> heat_W;         ///< of one effect
   OperatingPoint<Tangent> seen;
 };
 
-/// Evaluates one effect with derivatives with respect to its temperatures, its parameters and the copper loss, kDirections at a time.
-class LocalLaw {
- public:
-  LocalLaw(const EffectInPlace& effect, std::span<const double> parameters, const double* temperature_C, Workspace& workspace)
-      : temperature_C_(workspace.temperature_C),
-        parameter_(workspace.parameter),
-        heat_W_(workspace.heat_W),
-        effect_(effect),
-        roles_(static_cast<int>(effect.node_index.size())),
-        count_(static_cast<int>(effect.parameter_index.size())) {
-    for (int role = 0; role < roles_; ++role) {
-      temperature_C_[role].a = temperature_C[effect.node_index[role]];
-    }
-    for (int i = 0; i < count_; ++i) {
-      parameter_[i].a = parameters[effect.parameter_index[i]];
-    }
+/// Directions of the derivatives of the copper loss behind the drive stage.
+enum CopperDirection { by_resistance, by_coefficient, by_winding };
+
+void seed(Tangent& number, int direction) {
+  number.v.setZero();
+  if (direction >= 0 && direction < kDirections) {
+    number.v[direction] = 1.0;
   }
+}
 
-  /// Number of derivative directions, ordered: node roles, parameters, copper loss.
-  [[nodiscard]] int direction_count() const { return roles_ + count_ + 1; }
-
-  /// Computes the heat per role and its derivatives in kDirections directions, starting at direction `first`.
-  void book(OperatingPoint<Tangent>& at, int first) {
-    for (int role = 0; role < roles_; ++role) {
-      seed(temperature_C_[role], role - first);
-      heat_W_[role] = Tangent(0.0);
-    }
-    for (int i = 0; i < count_; ++i) {
-      seed(parameter_[i], roles_ + i - first);
-    }
-    seed(at.copper_loss_W, roles_ + count_ - first);
-    static constexpr std::array<int, kMostParameters> kOwn{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const Situation<Tangent> situation(at, parameter_.data(), kOwn.data(), temperature_C_.data(), kOwn.data());
-    HeatBook<Tangent> heat(heat_W_.data(), kOwn.data());
-    effect_.type->laws->tangent(situation, heat);
-  }
-  [[nodiscard]] const Tangent& heat_W(int role) const { return heat_W_[role]; }
-
- private:
-  static void seed(Tangent& number, int direction) {
-    number.v.setZero();
-    if (direction >= 0 && direction < kDirections) {
-      number.v[direction] = 1.0;
-    }
-  }
-
-  std::array<Tangent, kMostRoles>& temperature_C_;
-  std::array<Tangent, kMostParameters>& parameter_;
-  std::array<Tangent, kMostRoles>& heat_W_;
-  const EffectInPlace& effect_;
-  int roles_;
-  int count_;
-};
-
+/// Sums the heat of the effects with its derivatives. Each effect is differentiated with respect to its own inputs, kDirections at a time:
+/// first the temperatures of its roles, then its parameters, then the copper loss.
 class Linearisation {
  public:
-  Linearisation(std::span<const double> parameters, const double* temperature_C, int states, Workspace& workspace, Linearised& out)
-      : workspace_(workspace), parameters_(parameters), temperature_C_(temperature_C), states_(states), out_(out) {
+  Linearisation(int states, const DriveStage::Places* drive, Workspace& workspace, Linearised& out)
+      : states_(states), drive_(drive), workspace_(workspace), out_(out) {
     out.rate_K_per_s.setZero(states);
     out.by_state.setZero(states, states);
-    out.by_parameter.setZero(states, static_cast<Eigen::Index>(parameters.size()));
+    out.by_parameter.setZero(states, static_cast<Eigen::Index>(workspace.parameter.size()));
   }
 
+  /// The copper loss in `at` has the derivatives of the drive stage.
   void add(const EffectInPlace& effect, OperatingPoint<Tangent>& at) {
-    LocalLaw law(effect, parameters_, temperature_C_, workspace_);
+    const Tangent copper_loss_W = at.copper_loss_W;
     const int roles = static_cast<int>(effect.node_index.size());
-    for (int first = 0; first < law.direction_count(); first += kDirections) {
-      law.book(at, first);
+    const int directions = roles + static_cast<int>(effect.parameter_index.size()) + 1;
+    for (int role = 0; role < roles; ++role) {
+      workspace_.role_C[role].a = workspace_.temperature_C[effect.node_index[role]].a;
+    }
+    for (int first = 0; first < directions; first += kDirections) {
+      book_from(effect, at, first);
       for (int role = 0; role < roles; ++role) {
         const int node = effect.node_index[role];
         if (node >= states_) {
           continue;
         }
+        const Tangent& heat_W = workspace_.heat_W[role];
         if (first == 0) {
-          out_.rate_K_per_s[node] += law.heat_W(role).a;
+          out_.rate_K_per_s[node] += heat_W.a;
         }
-        for (int d = first; d < std::min(first + kDirections, law.direction_count()); ++d) {
-          add_derivative(effect, node, d, law.heat_W(role).v[d - first]);
+        for (int d = first; d < std::min(first + kDirections, directions); ++d) {
+          add_derivative(effect, copper_loss_W, node, d, heat_W.v[d - first]);
         }
       }
     }
+    at.copper_loss_W = copper_loss_W;
   }
-  void set_copper(const CopperGradient& copper) { copper_ = copper; }
 
   /// Divides heat in W by the heat capacities, so that rates and derivatives are per second.
   void divide_by(std::span<const int> capacity_index) {
     std::array<double, Network::kMostNodes> per_capacity_K_per_J{};
     for (int node = 0; node < states_; ++node) {
-      per_capacity_K_per_J[node] = 1.0 / parameters_[capacity_index[node]];
+      per_capacity_K_per_J[node] = 1.0 / workspace_.parameter[capacity_index[node]].a;
       out_.rate_K_per_s[node] *= per_capacity_K_per_J[node];
     }
     // Column by column, as they lie in memory.
@@ -134,7 +87,24 @@ class Linearisation {
   }
 
  private:
-  void add_derivative(const EffectInPlace& effect, int node, int direction, double slope) {
+  /// Books the heat of each role with its derivatives in kDirections directions, starting at direction `first`. A node that plays two roles
+  /// has one direction for each.
+  void book_from(const EffectInPlace& effect, OperatingPoint<Tangent>& at, int first) {
+    static constexpr std::array<int, Network::kMostRoles> kRoles{0, 1, 2, 3};
+    int direction = -first;
+    for (std::size_t role = 0; role < effect.node_index.size(); ++role) {
+      seed(workspace_.role_C[role], direction++);
+      workspace_.heat_W[role] = Tangent(0.0);
+    }
+    for (const int parameter : effect.parameter_index) {
+      seed(workspace_.parameter[parameter], direction++);
+    }
+    seed(at.copper_loss_W, direction);
+    HeatBook<Tangent> heat(workspace_.heat_W.data(), kRoles.data());
+    book<Tangent>(effect, at, workspace_.parameter.data(), workspace_.role_C.data(), kRoles.data(), heat);
+  }
+
+  void add_derivative(const EffectInPlace& effect, const Tangent& copper_loss_W, int node, int direction, double slope) {
     const int roles = static_cast<int>(effect.node_index.size());
     const int count = static_cast<int>(effect.parameter_index.size());
     if (slope == 0.0) {
@@ -146,46 +116,47 @@ class Linearisation {
       }
     } else if (direction < roles + count) {
       out_.by_parameter(node, effect.parameter_index[direction - roles]) += slope;
-    } else if (copper_) {
-      const DriveStage::Places& from = copper_->places;
-      if (from.winding < states_) {
-        out_.by_state(node, from.winding) += slope * copper_->by_winding_W_per_K;
+    } else if (drive_) {
+      if (drive_->winding < states_) {
+        out_.by_state(node, drive_->winding) += slope * copper_loss_W.v[by_winding];
       }
-      out_.by_parameter(node, from.resistance) += slope * copper_->by_resistance_W_per_ohm;
-      out_.by_parameter(node, from.coefficient) += slope * copper_->by_coefficient_W_K;
+      out_.by_parameter(node, drive_->resistance) += slope * copper_loss_W.v[by_resistance];
+      out_.by_parameter(node, drive_->coefficient) += slope * copper_loss_W.v[by_coefficient];
     }
   }
-  Workspace& workspace_;
-  std::span<const double> parameters_;
-  const double* temperature_C_;
+
   int states_;
+  const DriveStage::Places* drive_;  ///< null without a drive stage
+  Workspace& workspace_;
   Linearised& out_;
-  std::optional<CopperGradient> copper_;
 };
 
 }  // namespace
 
 void Network::linearise(const OperatingPoint<double>& at, std::span<const double> parameters, std::span<const double> state_C,
                         Linearised& out) const {
-  std::array<double, kMostNodes> temperature_C{};
-  std::copy_n(state_C.begin(), state_count(), temperature_C.begin());
-  temperature_C[static_cast<std::size_t>(state_count())] = at.ambient_C;
   static thread_local Workspace workspace;
-  OperatingPoint<Tangent>& seen = workspace.seen;
+  auto& [parameter, temperature_C, role_C, heat_W, seen] = workspace;
+  parameter.resize(parameters.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    parameter[i].a = parameters[i];
+  }
+  for (std::size_t node = 0; node < node_names_.size(); ++node) {
+    temperature_C[node].a = state_C[node];
+  }
+  temperature_C[node_names_.size()].a = at.ambient_C;
   // Only the copper loss ever carries derivatives here; they are set again for every law.
   convert_point([](Tangent& to, const double& from) { to.a = from; }, seen, at);
   seen.copper_loss_W.v.setZero();
-  Linearisation linearisation(parameters, temperature_C.data(), state_count(), workspace, out);
-  if (drive_) {
-    const auto& [resistance, coefficient, node] = drive_->places();
-    const Tangent loss_W = DriveStage::copper_loss_W(Tangent(at.current_rms_A), Tangent(parameters[resistance], 0),
-                                                     Tangent(parameters[coefficient], 1), Tangent(temperature_C[node], 2));
-    seen.copper_loss_W.a = loss_W.a;
-    linearisation.set_copper({drive_->places(), loss_W.v[2], loss_W.v[0], loss_W.v[1]});
+  const DriveStage::Places* const drive = drive_ ? &drive_->places() : nullptr;
+  if (drive) {
+    seed(parameter[drive->resistance], by_resistance);
+    seed(parameter[drive->coefficient], by_coefficient);
+    seed(temperature_C[drive->winding], by_winding);
   }
-  for (const EffectInPlace& effect : effects_) {
-    linearisation.add(effect, seen);
-  }
+  Linearisation linearisation(state_count(), drive, workspace, out);
+  evaluate<Tangent>(seen, parameter.data(), temperature_C.data(),
+                    [&](const EffectInPlace& effect, OperatingPoint<Tangent>& driven) { linearisation.add(effect, driven); });
   linearisation.divide_by(capacity_index_);
 }
 

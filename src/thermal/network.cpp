@@ -4,31 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <stdexcept>
-#include <type_traits>
 
-#include "thermal/law.h"
+#include "thermal/evaluation.h"
 
 namespace heatsoak::thermal {
-namespace {
-
-template <class S>
-void book(const EffectInPlace& effect, const OperatingPoint<S>& at, const S* parameters, const S* temperature_C, S* heat_W) {
-  const Situation<S> situation(at, parameters, effect.parameter_index.data(), temperature_C, effect.node_index.data());
-  HeatBook<S> heat_book(heat_W, effect.node_index.data());
-  if constexpr (std::is_same_v<S, double>) {
-    effect.type->laws->one(situation, heat_book);
-  } else {
-    effect.type->laws->lanes(situation, heat_book);
-  }
-}
-
-/// Returns whether a headroom can limit the current. The guard's motors have none, and a division takes longer than this comparison.
-bool has_limit(double headroom_V) { return headroom_V < std::numeric_limits<double>::infinity(); }
-bool has_limit(const Lanes& headroom_V) { return (headroom_V < std::numeric_limits<double>::infinity()).any(); }
-
-}  // namespace
 
 int Network::add_parameter(NetworkParameter parameter) {
   if (!parameter.range.contains(parameter.value)) {
@@ -120,25 +100,6 @@ std::vector<double> Network::values() const {
   return all;
 }
 
-template <class S, class Book>
-void Network::evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Book& book) const {
-  const S given_A = at.current_rms_A;
-  const S given_W = at.copper_loss_W;
-  if (drive_) {
-    if constexpr (!std::is_same_v<S, Traced>) {
-      if (has_limit(at.resistive_headroom_V)) {
-        at.current_rms_A = drive_->current_A(at, parameters, temperature_C);
-      }
-    }
-    at.copper_loss_W = drive_->copper_loss_W(at.current_rms_A, parameters, temperature_C);
-  }
-  for (const EffectInPlace& effect : effects_) {
-    book(effect, at);
-  }
-  at.current_rms_A = given_A;
-  at.copper_loss_W = given_W;
-}
-
 template <class S>
 void Network::rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters, std::span<S> temperature_C, std::span<S> rate) const {
   std::array<S, kMostNodes> heat_W;  // NOLINT(cppcoreguidelines-pro-type-member-init): those in use are set in the next lines
@@ -146,7 +107,8 @@ void Network::rate_K_per_s(OperatingPoint<S>& at, std::span<const S> parameters,
   std::fill_n(heat_W.begin(), states + 1, S(0.0));
   temperature_C[states] = at.ambient_C;
   evaluate<S>(at, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<S>& driven) {
-    book<S>(effect, driven, parameters.data(), temperature_C.data(), heat_W.data());
+    HeatBook<S> heat(heat_W.data(), effect.node_index.data());
+    book<S>(effect, driven, parameters.data(), temperature_C.data(), effect.node_index.data(), heat);
   });
   for (std::size_t node = 0; node < states; ++node) {
     rate[node] = heat_W[node] / parameters[static_cast<std::size_t>(capacity_index_[node])];
@@ -162,7 +124,8 @@ void Network::balance_W(const OperatingPoint<double>& at, std::span<const double
   OperatingPoint<double> own = at;
   double* row_W = heat_W.data();
   evaluate<double>(own, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<double>& driven) {
-    book<double>(effect, driven, parameters.data(), temperature_C.data(), row_W);
+    HeatBook<double> heat(row_W, effect.node_index.data());
+    book<double>(effect, driven, parameters.data(), temperature_C.data(), effect.node_index.data(), heat);
     row_W += node_count();
   });
 }
@@ -181,13 +144,11 @@ void Network::trace(const OperatingPoint<Traced>& at, std::span<const Traced> te
   }
   OperatingPoint<Traced> own = at;
   evaluate<Traced>(own, parameters.data(), temperature_C.data(), [&](const EffectInPlace& effect, const OperatingPoint<Traced>& driven) {
-    const Situation<Traced> situation(driven, parameters.data(), effect.parameter_index.data(), temperature_C.data(),
-                                      effect.node_index.data());
-    HeatBook<Traced> heat_book(node_heat.data(), effect.node_index.data(), {std::string(effect.type->name), nodes});
+    HeatBook<Traced> heat(node_heat.data(), effect.node_index.data(), {std::string(effect.type->name), nodes});
     if (formula != nullptr) {
       formula->begin_law(std::string(effect.type->name));
     }
-    effect.type->laws->traced(situation, heat_book);
+    book<Traced>(effect, driven, parameters.data(), temperature_C.data(), effect.node_index.data(), heat);
   });
 }
 

@@ -97,9 +97,10 @@ class Network {
   }
 
  private:
-  /// Calls book(effect, at) for all effects with the operating point behind the drive stage, then restores the point.
-  template <class S, class Book>
-  void evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Book& book) const;
+  /// Calls visit(effect, at) for all effects with the operating point behind the drive stage, then restores the point. Rates, balance,
+  /// trace and linearisation differ only in what they do with an effect. Defined in evaluation.h.
+  template <class S, class Visit>
+  void evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Visit& visit) const;
   int add_parameter(NetworkParameter parameter);
   int add_state(std::string name, int capacity_index);
 
