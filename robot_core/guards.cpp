@@ -77,16 +77,18 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   }
   const float rms_A = square_root(square_A2);
   const float speed_rad_per_s = sensed.speed_rad_per_s * config.gear_ratio;
-  static_assert(kGuardSignals == 7, "a further signal needs its value here");
+  // Laws that depend on a signal without a sample use the value that heats most.
   float signal[kGuardSignals];
+  for (float& each : signal) {
+    each = kNoSample;
+  }
   signal[guard_current_A] = sensed.current_A < 0.0F ? -rms_A : rms_A;
   // Without a speed the current is the limp current, which is safe at every speed.
-  signal[guard_speed_rad_per_s] = sensed.is_speed_known ? speed_rad_per_s : kNoSample;
+  if (sensed.is_speed_known) {
+    signal[guard_speed_rad_per_s] = speed_rad_per_s;
+  }
   signal[guard_ambient_C] = validated.ambient_C;
-  // This signal is not measured: laws that depend on it use the speed that heats most.
-  signal[guard_vehicle_speed_m_per_s] = kNoSample;
   signal[guard_neighbour_C] = model.plausible_range[guard_neighbour_C].is_used ? hottest_neighbour_C(config, state, i) : 0.0F;
-  signal[guard_age_h] = kNoSample;
   signal[guard_acceleration_rad_per_s2] = absolute(speed_rad_per_s - state.guard[i].speed_rad_per_s) / model.period_s;
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K, time);
   wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);

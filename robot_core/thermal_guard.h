@@ -12,17 +12,25 @@
 
 namespace robot_core {
 
-/// Input signals of a thermal law, in the order of the generated code.
+// clang-format off
+/// Input signals of a thermal law, in the order of the generated code, whose fields have these names.
+#define ROBOT_CORE_GUARD_SIGNALS(SIGNAL)                                                                             \
+  SIGNAL(current_A)               /* equivalent DC current, RMS over the guard period; positive: drives */           \
+  SIGNAL(speed_rad_per_s)         /* speed of the motor shaft, signed */                                             \
+  SIGNAL(ambient_C)               /* temperature of the air around the motor */                                      \
+  SIGNAL(vehicle_speed_m_per_s)   /* speed of the robot through the air */                                           \
+  SIGNAL(neighbour_C)             /* temperature of the hottest neighbouring motor */                                \
+  SIGNAL(age_h)                   /* operating hours of the motor */                                                 \
+  SIGNAL(acceleration_rad_per_s2) /* magnitude of dω/dt of the motor shaft, mean over the guard period */
+
+/// guard_current_A, guard_speed_rad_per_s, …
 enum GuardSignal : int {
-  guard_current_A,                ///< equivalent DC current, RMS over the guard period; positive: drives
-  guard_speed_rad_per_s,          ///< speed of the motor shaft, signed
-  guard_ambient_C,                ///< temperature of the air around the motor
-  guard_vehicle_speed_m_per_s,    ///< speed of the robot through the air
-  guard_neighbour_C,              ///< temperature of the hottest neighbouring motor
-  guard_age_h,                    ///< operating hours of the motor
-  guard_acceleration_rad_per_s2,  ///< magnitude of dω/dt of the motor shaft, mean over the guard period
+#define ROBOT_CORE_GUARD_INDEX(field) guard_##field,
+  ROBOT_CORE_GUARD_SIGNALS(ROBOT_CORE_GUARD_INDEX)
+#undef ROBOT_CORE_GUARD_INDEX
   kGuardSignals
 };
+// clang-format on
 
 inline constexpr int kMostGuardNodes = 6;
 

@@ -113,10 +113,9 @@ class Collector {
 
 void add_operating_points(Collector& all) {
   using Point = thermal::OperatingPoint<double>;
-  for (const thermal::OperatingQuantity<double>& each : thermal::kQuantities<double>) {
-    if (each.is_input_signal) {
-      all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
-    }
+  for (const std::size_t row : base::kCurveSignals) {
+    const thermal::OperatingQuantity<double>& each = thermal::kQuantities<double>[row];
+    all.add_where({each.signal.value()}, std::string(each.name), std::string(each.unit), [&](const Point& at) { return at.*each.value; });
     // The later of two signals that are nearly copies is left out.
     if (each.signal == thermal::Signal::input_power) {
       all.add_where({thermal::Signal::current, thermal::Signal::speed}, "current_speed_squared", "A rad2/s2",

@@ -19,9 +19,10 @@ struct RangedInput {
   std::string_view unit;
   bool is_size = false;  ///< true: the magnitude counts, and up to 20 % above the largest is in range
 };
-constexpr std::string_view kCurrent = "current_A";
-constexpr std::array kInputs{RangedInput{"ambient_C", "°C"}, RangedInput{"speed_rad_per_s", "rad/s", true},
-                             RangedInput{kCurrent, "A", true}};
+constexpr std::string_view kCurrent = base::row_of(base::Signal::current).column;
+constexpr std::array kInputs{RangedInput{base::kSignals[base::signal_row("ambient")].column, "°C"},
+                             RangedInput{base::row_of(base::Signal::speed).column, base::row_of(base::Signal::speed).unit, true},
+                             RangedInput{kCurrent, base::row_of(base::Signal::current).unit, true}};
 constexpr double kAmbient_K = 5.0;
 constexpr double kSize_ratio = 1.2;
 

@@ -83,11 +83,7 @@ std::vector<double> by_ratio(double first, double last, int count) {
   return values;
 }
 
-constexpr const thermal::OperatingQuantity<double>& quantity_of(std::size_t signal) {
-  return thermal::kQuantities<double>[observed::kRows[signal]];
-}
-
-/// Range of a signal whose worst case is searched.
+/// Values of a signal that depend on motor or robot, among which its worst case is searched.
 struct Scan {
   observed::Signal signal;
   std::vector<double> (*values)(const BarrierRules& rules);  ///< ascending
@@ -95,31 +91,54 @@ struct Scan {
 constexpr std::array kScans{
     Scan{observed::vehicle_speed, [](const BarrierRules& rules) { return evenly(0.0, rules.most_vehicle_speed_m_per_s, 101); }},
     Scan{observed::neighbour, [](const BarrierRules& rules) { return evenly(rules.hottest_ambient_C, rules.limits.winding_C, 33); }},
-    Scan{observed::age, [](const BarrierRules& /*rules*/) { return by_ratio(1e-2, 1e5, 141); }},
-    Scan{observed::acceleration, [](const BarrierRules& /*rules*/) { return by_ratio(1.0, 1e6, 241); }},
 };
 
-/// Returns whether every signal whose worst case is searched has one range, and no other signal has one.
+constexpr bool is_searched(std::size_t signal) { return observed::firmware_of(signal).worst == base::WorstCase::searched; }
+
+constexpr const Scan* own_scan(std::size_t signal) {
+  const auto* const found = std::ranges::find(kScans, static_cast<observed::Signal>(signal), &Scan::signal);
+  return found == kScans.end() ? nullptr : found;
+}
+
+/// Returns whether every signal whose worst case is searched has values, and no other signal has some.
 constexpr bool has_every_scan() {
   for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
-    const bool is_searched = quantity_of(signal).firmware->worst == thermal::WorstCase::searched;
-    const auto ranges = std::ranges::count(kScans, static_cast<observed::Signal>(signal), &Scan::signal);
-    if (ranges != (is_searched ? 1 : 0)) {
+    const int sources = (own_scan(signal) != nullptr ? 1 : 0) + (observed::firmware_of(signal).searched.count > 0 ? 1 : 0);
+    if (sources != (is_searched(signal) ? 1 : 0)) {
       return false;
     }
   }
   return true;
 }
-static_assert(has_every_scan(), "each input of the firmware with WorstCase::searched needs a range here");
+static_assert(has_every_scan(), "each input with WorstCase::searched needs values, either here or as FirmwareInput::searched");
+
+/// Returns the values among which the worst case of a signal is searched, ascending.
+std::vector<double> searched_values(const BarrierRules& rules, std::size_t signal) {
+  if (const Scan* const own = own_scan(signal)) {
+    return own->values(rules);
+  }
+  const auto& [low, high, count, is_by_ratio] = observed::firmware_of(signal).searched;
+  return is_by_ratio ? by_ratio(low, high, count) : evenly(low, high, count);
+}
+
+std::vector<observed::Signal> searched_signals() {
+  std::vector<observed::Signal> all;
+  for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
+    if (is_searched(signal)) {
+      all.push_back(static_cast<observed::Signal>(signal));
+    }
+  }
+  return all;
+}
 
 /// A temperature of the surroundings. Its neutral value is that of the air, not 0.
-constexpr bool is_temperature(std::size_t signal) { return quantity_of(signal).unit == "degC"; }
+constexpr bool is_temperature(std::size_t signal) { return observed::row_of(signal).unit == "degC"; }
 
 /// Returns whether current and speed alone act in both directions: they are the axes of the table and the arguments of HotCase::signals().
 constexpr bool are_axes_alone_signed() {
   for (std::size_t signal = 0; signal < observed::kSignalCount; ++signal) {
     const bool is_axis = signal == observed::current || signal == observed::speed;
-    if ((quantity_of(signal).firmware->worst == thermal::WorstCase::both_directions) != is_axis) {
+    if ((observed::firmware_of(signal).worst == base::WorstCase::both_directions) != is_axis) {
       return false;
     }
   }
@@ -160,12 +179,12 @@ std::vector<HotCase> surroundings(const Observer& observer, const BarrierRules& 
   HotCase for_winding = plain_case(rules);
   HotCase for_bodies = for_winding;
   bool is_any = false;
-  for (const Scan& scan : kScans) {
-    if (observer.uses(scan.signal)) {
+  for (const observed::Signal signal : searched_signals()) {
+    if (observer.uses(signal)) {
       is_any = true;
-      const Hottest found = hottest(observer, rules, scan.signal, scan.values(rules));
-      for_winding.held[scan.signal] = found.for_winding;
-      for_bodies.held[scan.signal] = found.for_bodies;
+      const Hottest found = hottest(observer, rules, signal, searched_values(rules, signal));
+      for_winding.held[signal] = found.for_winding;
+      for_bodies.held[signal] = found.for_bodies;
     }
   }
   return is_any ? std::vector{plain_case(rules), for_winding, for_bodies} : std::vector{plain_case(rules)};
@@ -190,11 +209,11 @@ std::vector<std::vector<float>> random_inputs(const Observer& observer, const Ba
   std::vector<std::pair<double, double>> ranges(observed::kSignalCount + observer.state_count(), {coldest_C, hottest_C});
   ranges[observed::current] = {-rules.most_current_A, rules.most_current_A};
   ranges[observed::speed] = {-rules.most_speed_rad_per_s, rules.most_speed_rad_per_s};
-  for (const Scan& scan : kScans) {
+  for (const observed::Signal signal : searched_signals()) {
     // A body in the surroundings has any temperature that a node may have.
-    if (!is_temperature(scan.signal)) {
-      const std::vector<double> values = scan.values(rules);
-      ranges[scan.signal] = {values.front(), values.back()};
+    if (!is_temperature(signal)) {
+      const std::vector<double> values = searched_values(rules, signal);
+      ranges[signal] = {values.front(), values.back()};
     }
   }
   base::Random random(1, 0);
@@ -251,8 +270,8 @@ std::vector<double> without_needless(const std::vector<double>& values, const Ob
 
 HotCase plain_case(const BarrierRules& rules) {
   HotCase plain;
-  for (const Scan& scan : kScans) {
-    plain.held[scan.signal] = is_temperature(scan.signal) ? rules.hottest_ambient_C : 0.0;
+  for (const observed::Signal signal : searched_signals()) {
+    plain.held[signal] = is_temperature(signal) ? rules.hottest_ambient_C : 0.0;
   }
   return plain;
 }
@@ -278,7 +297,7 @@ std::vector<double> values_if_unknown(const Observer& observer, const BarrierRul
     case thermal::WorstCase::searched:
       break;
   }
-  const std::vector<double> scanned = std::ranges::find(kScans, signal, &Scan::signal)->values(rules);
+  const std::vector<double> scanned = searched_values(rules, static_cast<std::size_t>(signal));
   std::vector<double> values;
   for (const HotCase& each : surroundings(observer, rules)) {
     values.push_back(each.held[signal]);

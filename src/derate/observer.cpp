@@ -16,7 +16,7 @@ std::span<const SignalSpec> signals() {
   static constexpr std::array<SignalSpec, kSignalCount> kSignals = [] {
     std::array<SignalSpec, kSignalCount> all{};
     for (std::size_t i = 0; i < kSignalCount; ++i) {
-      const thermal::FirmwareInput& input = thermal::kQuantities<double>[kRows[i]].firmware.value();
+      const base::FirmwareInput& input = firmware_of(i);
       all[i] = {input.field, input.meaning, input.worst, input.without_power, {}};
       if (input.worst != thermal::WorstCase::both_directions) {
         all[i].row = kRows[i];

@@ -11,6 +11,7 @@
 
 #include "motor/motor.h"
 #include "robot/robot.h"
+#include "robot_core/thermal_guard.h"
 #include "thermal/lanes.h"
 #include "thermal/network.h"
 #include "thermal/operating_point.h"
@@ -18,27 +19,39 @@
 
 namespace heatsoak::derate {
 
-/// Inputs of the observer, the quantities of thermal::kQuantities that have a FirmwareInput, in the order of the formula's first inputs.
-/// thermal::Signal enumerates other signals: those of a log.
+/// Inputs of the observer: the rows of base::kSignals that have a FirmwareInput, in the order of the drive core and of the formula's first
+/// inputs. thermal::Signal enumerates other signals: those of a log.
 namespace observed {
-enum Signal : int { current, speed, ambient, vehicle_speed, neighbour, age, acceleration };
-inline constexpr std::size_t kSignalCount = acceleration + 1;
-/// Row of thermal::kQuantities for each enumerator.
+using Signal = robot_core::GuardSignal;
+inline constexpr std::size_t kSignalCount = robot_core::kGuardSignals;
+inline constexpr Signal current = robot_core::guard_current_A;
+inline constexpr Signal speed = robot_core::guard_speed_rad_per_s;
+inline constexpr Signal ambient = robot_core::guard_ambient_C;
+inline constexpr Signal vehicle_speed = robot_core::guard_vehicle_speed_m_per_s;
+inline constexpr Signal neighbour = robot_core::guard_neighbour_C;
+inline constexpr Signal age = robot_core::guard_age_h;
+inline constexpr Signal acceleration = robot_core::guard_acceleration_rad_per_s2;
+
+#define HEATSOAK_FIELD_NAME(field) #field,
+inline constexpr std::array<std::string_view, kSignalCount> kFields{ROBOT_CORE_GUARD_SIGNALS(HEATSOAK_FIELD_NAME)};
+#undef HEATSOAK_FIELD_NAME
+/// Row of base::kSignals for each input.
 inline constexpr std::array kRows = [] {
   std::array<std::size_t, kSignalCount> rows{};
-  rows.fill(thermal::kQuantityCount);
-  rows[current] = thermal::quantity_row("current");
-  rows[speed] = thermal::quantity_row("speed");
-  rows[ambient] = thermal::quantity_row("ambient");
-  rows[vehicle_speed] = thermal::quantity_row("vehicle_speed");
-  rows[neighbour] = thermal::quantity_row("neighbour_temperature");
-  rows[age] = thermal::quantity_row("age");
-  rows[acceleration] = thermal::quantity_row("acceleration");
+  for (std::size_t i = 0; i < kSignalCount; ++i) {
+    const auto found =
+        std::ranges::find_if(base::kSignals, [i](const base::SignalRow& row) { return row.firmware && row.firmware->field == kFields[i]; });
+    rows[i] = static_cast<std::size_t>(found - base::kSignals.begin());
+  }
   return rows;
 }();
-static_assert(kSignalCount == thermal::firmware_input_count() &&
-                  std::ranges::all_of(kRows, [](std::size_t row) { return row < thermal::kQuantityCount; }),
-              "a row for every input of the firmware");
+static_assert(std::ranges::count_if(base::kSignals, [](const base::SignalRow& row) { return row.firmware.has_value(); }) == kSignalCount &&
+                  std::ranges::find(kRows, base::kSignals.size()) == kRows.end(),
+              "each input of the firmware has a row in base/signal_table.h and a name in robot_core/thermal_guard.h");
+
+/// Row of an input.
+constexpr const base::SignalRow& row_of(std::size_t signal) { return base::kSignals[kRows[signal]]; }
+constexpr const base::FirmwareInput& firmware_of(std::size_t signal) { return *row_of(signal).firmware; }
 
 struct SignalSpec {
   std::string_view name;     ///< field name in generated code

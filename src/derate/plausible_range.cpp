@@ -21,7 +21,7 @@ float fastest_rad_per_s(const Derating& derating) {
 /// A failed sensor or a zero-initialised structure reads exactly 0.
 float coldest_C(const Derating& derating) { return static_cast<float>(derating.options.coldest_ambient_C) + 0.05F; }
 
-/// Bounds of one signal, wider than the motor's operating range, so that only a faulty sensor exceeds them.
+/// Bounds of one signal that depend on motor or robot, wider than the motor's operating range, so that only a faulty sensor exceeds them.
 struct SignalBounds {
   observed::Signal signal;
   Bounds (*of)(const Derating& derating);
@@ -48,10 +48,6 @@ constexpr std::array kBounds{
                  [](const Derating& derating) {
                    return Bounds{coldest_C(derating) - kNeighbourBelowAir_K, kMostState_C};
                  }},
-    SignalBounds{observed::age,
-                 [](const Derating& /*derating*/) {
-                   return Bounds{0.0F, 1e6F};
-                 }},
     SignalBounds{observed::acceleration,
                  [](const Derating& derating) {
                    return Bounds{
@@ -59,18 +55,28 @@ constexpr std::array kBounds{
                  }},
 };
 
-/// Returns whether kBounds has one row per input of the firmware, in their order.
+constexpr const SignalBounds* own_bounds(std::size_t signal) {
+  const auto* const found = std::ranges::find(kBounds, static_cast<observed::Signal>(signal), &SignalBounds::signal);
+  return found == kBounds.end() ? nullptr : found;
+}
+
 constexpr bool has_all_bounds() {
-  for (std::size_t i = 0; i < kBounds.size(); ++i) {
-    if (kBounds[i].signal != static_cast<observed::Signal>(i)) {
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    if ((own_bounds(i) != nullptr) == observed::firmware_of(i).plausible.has_value()) {
       return false;
     }
   }
-  return kBounds.size() == observed::kSignalCount;
+  return true;
 }
-static_assert(has_all_bounds(), "each input of the firmware needs bounds here");
+static_assert(has_all_bounds(), "each input of the firmware needs bounds, either here or as FirmwareInput::plausible");
 
-Bounds bounds(const Derating& derating, observed::Signal signal) { return kBounds[static_cast<std::size_t>(signal)].of(derating); }
+Bounds bounds(const Derating& derating, observed::Signal signal) {
+  if (const SignalBounds* const own = own_bounds(static_cast<std::size_t>(signal))) {
+    return own->of(derating);
+  }
+  const base::InputRange& stated = *observed::firmware_of(static_cast<std::size_t>(signal)).plausible;
+  return {static_cast<float>(stated.low), static_cast<float>(stated.high)};
+}
 
 }  // namespace
 

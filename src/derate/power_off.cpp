@@ -34,6 +34,7 @@ std::array<double, observed::kSignalCount> signals_without_power(const Derating&
   std::array<double, observed::kSignalCount> signals{};
   for (std::size_t i = 0; i < signals.size(); ++i) {
     switch (observed::signals()[i].without_power) {
+      case thermal::WithoutPower::unstated:
       case thermal::WithoutPower::zero:
         break;
       case thermal::WithoutPower::hottest_air:

@@ -94,7 +94,7 @@ std::map<std::string, Eigen::VectorXd> columns_along(const recording::Recording&
   std::map<std::string, Eigen::VectorXd> columns;
   for (const recording::Channel& channel : recording.channels) {
     // The network's laws use the current's magnitude; its sign is only available from the log.
-    const bool has_sign = channel.quantity.key == "current_A";
+    const bool has_sign = channel.quantity.key == column_of(thermal::Signal::current);
     if (channel.quantity.kind != recording::QuantityKind::temperature && (!is_elsewhere(channel.quantity.key) || has_sign)) {
       columns.emplace(channel.quantity.key, means_along(channel, recording.time_s, time_s));
     }

@@ -12,6 +12,8 @@
 namespace heatsoak::estimation {
 namespace {
 
+constexpr std::string_view kAmbientColumn = base::kSignals[base::signal_row("ambient")].column;
+
 bool is_there(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque, bool ignores_current) {
   const auto is_recorded = [&](thermal::Signal each) {
     return has_values(recording.find(column_of(each))) && !(ignores_current && each == thermal::Signal::current);
@@ -75,12 +77,12 @@ bool has_values(const recording::Channel* channel) {
 }
 
 LogRows::LogRows(const recording::Recording& recording, const MeasuredRunOptions& options)
-    : current_A_(options.ignores_current ? nullptr : values("current_A", recording)),
-      speed_rad_per_s_(values("speed_rad_per_s", recording)),
-      torque_Nm_(values("torque_Nm", recording)),
-      bus_V_(values("bus_V", recording)),
+    : current_A_(options.ignores_current ? nullptr : values(column_of(thermal::Signal::current), recording)),
+      speed_rad_per_s_(values(column_of(thermal::Signal::speed), recording)),
+      torque_Nm_(values(column_of(thermal::Signal::shaft_power), recording)),
+      bus_V_(values(column_of(thermal::Signal::bus_voltage), recording)),
       modulation_(values(column_of(thermal::Signal::modulation), recording)),
-      surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : "ambient_C", recording), recording.time_s)),
+      surroundings_C_(bridged(values(has_values(recording.find("coolant_C")) ? "coolant_C" : kAmbientColumn, recording), recording.time_s)),
       is_signed_(has_negative(current_A_) && has_negative(speed_rad_per_s_)),
       is_driven_(current_A_ && std::ranges::any_of(*current_A_, [&](double each_A) { return std::abs(each_A) > options.least_current_A; })),
       time_s_(recording.time_s),

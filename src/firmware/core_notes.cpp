@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "base/quantity.h"
-#include "derate/observer.h"
 #include "robot/assumed_friction.h"
 
 namespace heatsoak::firmware {
@@ -35,20 +34,8 @@ std::string say(const FrictionUnknown& of) {
       of.robot_file);
 }
 
-std::string say(const AirSpeedUnknown& of) {
-  return fmt::format(
-      "{} depends on the robot's speed through the air, which the core does not know: it uses the speed with the most heating, still air "
-      "if wind cools",
-      names_of(of.effects));
-}
-
-std::string say(const NeighboursFromGuards& of) {
-  return fmt::format("{} depends on the motors beside it: the core uses the hottest of the other wheels' guards", names_of(of.effects));
-}
-
-std::string say(const AgeUnknown& of) {
-  return fmt::format("{} depends on operating hours, which the core does not know: it uses the age with the most heating",
-                     names_of(of.effects));
+std::string say(const InputNotMeasured& of) {
+  return fmt::format("{} depends on {}", names_of(of.effects), derate::observed::firmware_of(of.input).unmeasured);
 }
 
 std::string say(const ColumnUnknown& of) {
@@ -104,16 +91,11 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
   if (!robot::has_friction(robot)) {
     notes.emplace_back(FrictionUnknown{robot.file.filename().string()});
   }
-  static_assert(derate::observed::kSignalCount == 7, "a further input that the core does not measure needs a note here");
-  const derate::Observer& observer = derating.observer;
-  if (observer.uses(derate::observed::vehicle_speed)) {
-    notes.emplace_back(AirSpeedUnknown{effects_with(motor, thermal::Signal::vehicle_speed)});
-  }
-  if (observer.uses(derate::observed::neighbour)) {
-    notes.emplace_back(NeighboursFromGuards{effects_with(motor, thermal::Signal::neighbour_temperature)});
-  }
-  if (observer.uses(derate::observed::age)) {
-    notes.emplace_back(AgeUnknown{effects_with(motor, thermal::Signal::age)});
+  for (std::size_t i = 0; i < derate::observed::kSignalCount; ++i) {
+    const auto input = static_cast<derate::observed::Signal>(i);
+    if (derating.observer.uses(input) && !derate::observed::firmware_of(i).unmeasured.empty()) {
+      notes.emplace_back(InputNotMeasured{input, effects_with(motor, derate::observed::row_of(i).signal.value())});
+    }
   }
   for (const motor::MotorEffect& effect : motor.effects) {
     if (!effect.column.empty()) {

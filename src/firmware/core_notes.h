@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derate/derating.h"
+#include "derate/observer.h"
 #include "motor/default_spread.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
@@ -16,16 +17,9 @@ namespace heatsoak::firmware {
 struct FrictionUnknown {
   std::string robot_file;
 };
-/// Effects depend on the robot's speed through the air: the core uses the speed with the most heating.
-struct AirSpeedUnknown {
-  std::vector<std::string> effects;  ///< names; empty for a law of every motor
-};
-/// Effects depend on the motors beside this one: the core uses the hottest of the other wheels' guards.
-struct NeighboursFromGuards {
-  std::vector<std::string> effects;  ///< names; empty for a law of every motor
-};
-/// Effects depend on operating hours: the core uses the age with the most heating.
-struct AgeUnknown {
+/// Effects depend on an input that the core does not measure.
+struct InputNotMeasured {
+  derate::observed::Signal input;
   std::vector<std::string> effects;  ///< names; empty for a law of every motor
 };
 /// An effect depends on a log column: the core uses the value with the most heating.
@@ -62,8 +56,8 @@ struct HeatUnmodelled {
 };
 /// The core was generated with --shadow.
 struct ShadowModeChosen {};
-using CoreNote = std::variant<FrictionUnknown, AirSpeedUnknown, NeighboursFromGuards, AgeUnknown, ColumnUnknown, SpreadsAssumed,
-                              ConditionStated, StopTakesCurrent, ValueDoubtful, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
+using CoreNote = std::variant<FrictionUnknown, InputNotMeasured, ColumnUnknown, SpreadsAssumed, ConditionStated, StopTakesCurrent,
+                              ValueDoubtful, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
 
 /// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,

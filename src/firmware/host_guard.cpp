@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "base/diagnostic.h"
 #include "derate/power_off.h"
@@ -14,26 +12,21 @@
 namespace heatsoak::firmware {
 namespace {
 
-/// Inputs of the drive core in the order of the observer.
-constexpr std::array kInputs{
-    std::pair{robot_core::guard_current_A, derate::observed::current},
-    std::pair{robot_core::guard_speed_rad_per_s, derate::observed::speed},
-    std::pair{robot_core::guard_ambient_C, derate::observed::ambient},
-    std::pair{robot_core::guard_vehicle_speed_m_per_s, derate::observed::vehicle_speed},
-    std::pair{robot_core::guard_neighbour_C, derate::observed::neighbour},
-    std::pair{robot_core::guard_age_h, derate::observed::age},
-    std::pair{robot_core::guard_acceleration_rad_per_s2, derate::observed::acceleration},
-};
-static_assert(
-    [] {
-      for (std::size_t i = 0; i < kInputs.size(); ++i) {
-        if (static_cast<std::size_t>(kInputs[i].first) != i || static_cast<std::size_t>(kInputs[i].second) != i) {
-          return false;
-        }
-      }
-      return kInputs.size() == derate::observed::kSignalCount && kInputs.size() == std::size_t{robot_core::kGuardSignals};
-    }(),
-    "each input of the firmware needs an index in robot_core/thermal_guard.h and a pair here");
+/// Returns whether the drive core has the values that the rows state for a motor without power. guard_memory.cpp and, for a gap,
+/// thermal_guard.cpp set those of two temperatures and search the age; all others are 0.
+constexpr bool has_values_without_power() {
+  for (std::size_t i = 0; i < derate::observed::kSignalCount; ++i) {
+    const base::WithoutPower expected = i == derate::observed::ambient     ? base::WithoutPower::hottest_air
+                                        : i == derate::observed::neighbour ? base::WithoutPower::winding_limit
+                                        : i == derate::observed::age       ? base::WithoutPower::any
+                                                                           : base::WithoutPower::zero;
+    if (derate::observed::firmware_of(i).without_power != expected) {
+      return false;
+    }
+  }
+  return true;
+}
+static_assert(has_values_without_power(), "an input that is not 0 without power needs its value in the drive core");
 
 std::vector<float> single(const std::vector<double>& values) {
   std::vector<float> rounded(values.size());

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/quantity.h"
+#include "base/signals.h"
 
 namespace heatsoak::motor {
 namespace {
@@ -104,8 +105,12 @@ struct RangeKey {
   std::string_view channel;
   std::string_view unit;
 };
-constexpr std::array kRangeKeys{RangeKey{"trained_ambient", "ambient_C", "degC"}, RangeKey{"trained_speed", "speed_rad_per_s", "rad/s"},
-                                RangeKey{"trained_current", "current_A", "A"}};
+constexpr RangeKey range_key(std::string_view key, std::string_view signal) {
+  const base::SignalRow& row = base::kSignals[base::signal_row(signal)];
+  return {key, row.column, row.unit};
+}
+constexpr std::array kRangeKeys{range_key("trained_ambient", "ambient"), range_key("trained_speed", "speed"),
+                                range_key("trained_current", "current")};
 
 TrainingRange read_training(input::Reader& table) {
   TrainingRange range;

@@ -56,15 +56,15 @@ std::string inactive_effects(std::span<const motor::Motor> motors, Neighbours ne
   std::string text = columns_at_their_hottest(motors) + effects_under_conditions(motors);
   for (const motor::Motor& motor : motors) {
     for (const motor::MotorEffect& effect : motor.effects) {
-      const std::vector<thermal::Signal> needed = effect.type->needed_with(effect.values());
-      const auto needs = [&](thermal::Signal signal) { return std::ranges::find(needed, signal) != needed.end(); };
-      const bool needs_neighbour = neighbours != Neighbours::known && needs(thermal::Signal::neighbour_temperature);
-      if (needs_neighbour) {
-        text += fmt::format("{}: {} is left out{}, because a duty does not state the neighbour's temperature\n", motor.id, effect.name,
-                            neighbours == Neighbours::known_in_closed_loop ? " of the table and the picture without a closed loop" : "");
-      }
-      if (needs(thermal::Signal::age)) {
-        text += fmt::format("{}: {} is that of a new motor, because a duty does not state the operating hours\n", motor.id, effect.name);
+      for (const thermal::Signal signal : effect.type->needed_with(effect.values())) {
+        const auto& [consequence, quantity] = base::row_of(signal).unstated;
+        const bool is_neighbour = signal == thermal::Signal::neighbour_temperature;
+        if (!quantity.empty() && !(is_neighbour && neighbours == Neighbours::known)) {
+          text += fmt::format(
+              "{}: {} {}{}, because a duty does not state {}\n", motor.id, effect.name, consequence,
+              is_neighbour && neighbours == Neighbours::known_in_closed_loop ? " of the table and the picture without a closed loop" : "",
+              quantity);
+        }
       }
     }
   }

@@ -20,33 +20,24 @@ constexpr base::Range kAny = base::Range::any();
 /// Valid for all units; larger values would make squares and sums meaningless.
 constexpr base::Range kHeatInput = base::Range::between(-1e12, 1e12);
 
-constexpr std::array kTypes{
+/// Columns that are no signals of base::kSignals.
+constexpr std::array kOfLogs{
     QuantityType{"time_s", Kind::time, "s", kAny, false, "time of the row; any origin, strictly increasing"},
     QuantityType{"winding_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the winding"},
     QuantityType{"stator_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the stator (iron, or the motor's outside)"},
     QuantityType{"housing_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of a housing around the stator"},
     QuantityType{"tooth_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of a stator tooth"},
     QuantityType{"magnet_C", Kind::temperature, "degC", kTemperature_C, false, "temperature of the rotor's magnets"},
-    QuantityType{"ambient_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the air around the motor"},
     QuantityType{"coolant_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of a cooling liquid"},
     QuantityType{"driver_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of the motor's driver"},
-    QuantityType{"neighbour_C", Kind::surroundings, "degC", kTemperature_C, false, "temperature of another motor close by"},
-    QuantityType{"current_A", Kind::heat_input, "A", kHeatInput, false,
-                 "equivalent DC current (torque per torque constant): rms over the interval, sign of its mean"},
     QuantityType{"current_d_A", Kind::heat_input, "A", kHeatInput, false, "field-producing current, peak of a phase"},
     QuantityType{"current_q_A", Kind::heat_input, "A", kHeatInput, false, "torque-producing current, peak of a phase"},
-    QuantityType{"speed_rad_per_s", Kind::heat_input, "rad/s", kHeatInput, false, "speed of the motor's shaft"},
-    QuantityType{"torque_Nm", Kind::heat_input, "Nm", kHeatInput, false, "torque at the motor's shaft"},
     QuantityType{"motor_V", Kind::heat_input, "V", kHeatInput, false, "voltage at the motor's terminals, with sign"},
     QuantityType{"motor_d_V", Kind::heat_input, "V", kHeatInput, false, "voltage along the field"},
     QuantityType{"motor_q_V", Kind::heat_input, "V", kHeatInput, false, "voltage across the field"},
-    QuantityType{"bus_V", Kind::heat_input, "V", kHeatInput, false, "voltage of the supply at the driver"},
     QuantityType{"bus_A", Kind::heat_input, "A", kHeatInput, false, "current from the supply into the driver"},
-    QuantityType{"power_in_W", Kind::heat_input, "W", kHeatInput, false, "electric power into the driver, its losses included"},
     QuantityType{"power_out_W", Kind::heat_input, "W", kHeatInput, false, "mechanical power at the shaft"},
-    QuantityType{"modulation_ratio", Kind::heat_input, "", kHeatInput, false, "modulation of the driver, -1 … 1", "duty_ratio"},
     QuantityType{"battery_V", Kind::signal, "V", kAny, false, "voltage of the robot's battery"},
-    QuantityType{"vehicle_speed_m_per_s", Kind::signal, "m/s", kAny, false, "speed over ground: airflow"},
     QuantityType{"heading_rad", Kind::signal, "rad", kAny, false, "direction of travel in the robot's frame, 0 is ahead, anticlockwise"},
     QuantityType{"vx_m_per_s", Kind::signal, "m/s", kAny, false, "measured velocity ahead, robot's frame"},
     QuantityType{"vy_m_per_s", Kind::signal, "m/s", kAny, false, "measured velocity to the left, robot's frame"},
@@ -66,6 +57,25 @@ constexpr std::array kTypes{
     QuantityType{"wheel_winding_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the winding of a wheel's motor"},
     QuantityType{"wheel_stator_C", Kind::temperature, "degC", kTemperature_C, true, "temperature of the stator of a wheel's motor"},
 };
+
+constexpr base::Range range_of(Kind kind, std::string_view unit) {
+  return unit == "degC" ? kTemperature_C : kind == Kind::heat_input ? kHeatInput : kAny;
+}
+
+constexpr std::size_t kSignalColumns =
+    std::ranges::count_if(base::kSignals, [](const base::SignalRow& row) { return !row.column.empty(); });
+
+constexpr std::array kTypes = [] {
+  std::array<QuantityType, kOfLogs.size() + kSignalColumns> types{};
+  auto next = std::ranges::copy(kOfLogs, types.begin()).out;
+  for (const base::SignalRow& row : base::kSignals) {
+    if (!row.column.empty()) {
+      const std::string_view unit = row.column_unit.empty() ? row.unit : row.column_unit;
+      *next++ = {row.column, row.column_kind, unit, range_of(row.column_kind, unit), false, row.column_meaning, row.column_alias};
+    }
+  }
+  return types;
+}();
 
 /// Endings that UDUNITS-2 spells differently or interprets differently (C is coulomb there).
 struct Ending {

@@ -8,19 +8,15 @@
 #include <string_view>
 
 #include "base/parameter.h"
+#include "base/signals.h"
 
 namespace heatsoak::recording {
 
-enum class QuantityKind {
-  time,
-  temperature,   ///< temperature of a part of the motor at the row's time
-  surroundings,  ///< temperature that the motor does not determine: ambient, coolant, driver, neighbour
-  heat_input,    ///< current, speed, torque, voltage, power: value of the interval that begins at the row's time
-  signal         ///< any other signal
-};
+using base::QuantityKind;
 std::string_view to_string(QuantityKind kind);
 
-/// One row of the table. A numbered quantity has one column per number: wheel_speed_rad_per_s_1, _2, …
+/// One row of the table: a column of base::kSignals, or one that only logs have. A numbered quantity has one column per number:
+/// wheel_speed_rad_per_s_1, _2, …
 struct QuantityType {
   std::string_view key;
   QuantityKind kind;

@@ -10,10 +10,10 @@ namespace {
 
 /// Scratch memory kept between calls: clearing unused derivatives would cost more than evaluating the laws.
 struct Workspace {
-  std::vector<Tangent> parameter;                          ///< of the network
-  std::array<Tangent, Network::kMostNodes> temperature_C;  ///< of the network's nodes, for the drive stage
-  std::array<Tangent, Network::kMostRoles> role_C;         ///< of one effect
-  std::array<Tangent, Network::kMostRoles> heat_W;         ///< of one effect
+  std::vector<Tangent> parameter;
+  std::array<Tangent, Network::kMostNodes> temperature_C;  ///< temperatures of all nodes, for the drive stage
+  std::array<Tangent, Network::kMostRoles> role_C;         ///< temperatures of the roles of the effect in turn
+  std::array<Tangent, Network::kMostRoles> heat_W;         ///< heat that the effect books into its roles
   OperatingPoint<Tangent> seen;
 };
 

@@ -52,9 +52,9 @@ TEST(SignalTable, NamesAreUniqueAndInputSignalsComplete) {
     names.insert(each.name);
     ++rows;
     EXPECT_EQ(thermal::quantity_row(each.name), rows - 1);
-    if (each.is_input_signal) {
+    if (each.curve_place) {
       EXPECT_TRUE(each.signal) << each.name;
-      EXPECT_FALSE(each.meaning.empty()) << each.name;
+      EXPECT_FALSE(each.curve_meaning.empty()) << each.name;
     }
   }
   EXPECT_EQ(names.size(), rows);

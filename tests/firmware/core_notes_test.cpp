@@ -90,11 +90,12 @@ TEST(CoreNotes, EveryKindHasItsSentence) {
       {FrictionUnknown{"mine.toml"},
        "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: mine.toml has no [friction]; "
        "measure it with `heatsoak friction`"},
-      {AirSpeedUnknown{{"wind", "fan"}},
+      {InputNotMeasured{derate::observed::vehicle_speed, {"wind", "fan"}},
        "wind, fan depends on the robot's speed through the air, which the core does not know: it uses the speed with the most heating, "
        "still air if wind cools"},
-      {NeighboursFromGuards{{"next"}}, "next depends on the motors beside it: the core uses the hottest of the other wheels' guards"},
-      {AgeUnknown{},
+      {InputNotMeasured{derate::observed::neighbour, {"next"}},
+       "next depends on the motors beside it: the core uses the hottest of the other wheels' guards"},
+      {InputNotMeasured{derate::observed::age, {}},
        "the motor's thermal law depends on operating hours, which the core does not know: it uses the age with the most "
        "heating"},
       {ColumnUnknown{"curve", "gripper_ratio"},

@@ -179,25 +179,13 @@ TEST_F(Tabulated, is_heat_a_share_of_the_copper_loss_or_a_conductance) {
 /// The signals in needs() must be exactly those that the curve's heat depends on.
 TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
   using At = OperatingPoint<double>;
-  const std::vector<std::pair<Signal, void (*)(At&)>> changes{
-      {Signal::current, [](At& at) { at.current_rms_A = 4.7, at.copper_loss_W = 9.0; }},
-      {Signal::speed,
-       [](At& at) {
-         at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = 4.7, at.velocity_rad_per_s = -4.7, at.acceleration_rad_per_s2 = 4.7;
-       }},
-      {Signal::shaft_power, [](At& at) { at.shaft_power_W = 4.7; }},
-      {Signal::input_power, [](At& at) { at.input_power_W = 4.7; }},
-      {Signal::modulation, [](At& at) { at.modulation_ratio = 4.7; }},
-      {Signal::bus_voltage, [](At& at) { at.bus_V = 4.7; }},
-      {Signal::vehicle_speed, [](At& at) { at.vehicle_speed_m_per_s = 4.7; }},
-      {Signal::neighbour_temperature, [](At& at) { at.neighbour_C = 64.7; }},
-      {Signal::age, [](At& at) { at.age_h = 4.7; }}};
-  ASSERT_EQ(changes.size(), kSignalCount) << "every signal needs a change here";
   At before;
-  before.current_rms_A = before.copper_loss_W = before.speed_mean_rad_per_s = before.speed_rms_rad_per_s = 2.2;
-  before.velocity_rad_per_s = before.acceleration_rad_per_s2 = before.shaft_power_W = before.input_power_W = 2.2;
-  before.modulation_ratio = before.bus_V = before.vehicle_speed_m_per_s = before.age_h = 2.2;
-  before.known = kNeighbour, before.neighbour_C = 62.2;
+  before.copper_loss_W = 2.2;
+  for (std::size_t row = 0; row < kQuantityCount; ++row) {
+    if (kQuantities<double>[row].signal) {
+      set_quantity(before, row, kQuantities<double>[row].unit == "degC" ? 62.2 : 2.2);
+    }
+  }
   for (const base::Choice& signal : type().parameters[driver].choices) {
     for (const base::Choice& shape : type().parameters[form].choices) {
       std::vector<double> curve = parameters(signal.name, shape.name, -50.0, 60.0);
@@ -205,12 +193,14 @@ TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
         curve[value + knot] = 1.0 + static_cast<double>(knot);
       }
       const std::vector<Signal> needed = type().needed_with(curve);
-      for (const auto& [one, change] : changes) {
+      for (std::size_t one = 0; one < kSignalCount; ++one) {
         At at = before;
-        change(at);
-        const bool is_needed = std::ranges::find(needed, one) != needed.end();
-        EXPECT_EQ(heat(curve, at) != heat(curve, before), is_needed)
-            << signal.name << " " << shape.name << " signal " << static_cast<int>(one);
+        at.copper_loss_W += static_cast<Signal>(one) == Signal::current ? 6.8 : 0.0;
+        for (const OperatingQuantity<double>& row : kQuantities<double>) {
+          at.*row.value += row.signal == static_cast<Signal>(one) ? 2.5 : 0.0;
+        }
+        const bool is_needed = std::ranges::find(needed, static_cast<Signal>(one)) != needed.end();
+        EXPECT_EQ(heat(curve, at) != heat(curve, before), is_needed) << signal.name << " " << shape.name << " signal " << one;
       }
     }
   }
@@ -218,39 +208,26 @@ TEST_F(Tabulated, needs_the_signals_that_it_depends_on) {
 
 TEST_F(Tabulated, looks_at_the_signal_that_was_chosen) {
   OperatingPoint<double> at;
-  at.speed_mean_rad_per_s = 2.0;
+  std::vector<std::pair<std::string_view, double>> expected;
+  for (std::size_t place = 0; place < base::kCurveSignalCount; ++place) {
+    const OperatingQuantity<double>& row = kQuantities<double>[base::kCurveSignals[place]];
+    const double size = 0.5 + static_cast<double>(place);
+    at.*row.value = row.name == "velocity" || row.name == "shaft_power" ? -size : size;
+    expected.emplace_back(row.name, at.*row.value);
+  }
   at.speed_rms_rad_per_s = 3.0;
-  at.velocity_rad_per_s = -1.0;
-  at.acceleration_rad_per_s2 = 4.0;
-  at.current_rms_A = 0.5;
-  at.shaft_power_W = -2.0;
-  at.input_power_W = 5.0;
-  at.modulation_ratio = 0.25;
-  at.bus_V = 5.5;
-  at.vehicle_speed_m_per_s = 1.5;
-  at.age_h = 3.5;
   at.neighbour_C = 46.5;
   at.known = kNeighbour | column_bit(0) | column_bit(1) | column_bit(2);
   at.first_column = 7.5, at.second_column = 8.5, at.third_column = 9.5;
   // A line from −10 to 50 returns the regressor itself: value = regressor + 10.
   const std::vector<double> temperature_C{60.0, 40.0, 43.0, 42.0};
-  const std::vector<std::pair<std::string_view, double>> expected{{"speed", 2.0},
-                                                                  {"velocity", -1.0},
-                                                                  {"acceleration", 4.0},
-                                                                  {"current", 0.5},
-                                                                  {"current_speed_squared", 4.5},
-                                                                  {"shaft_power", -2.0},
-                                                                  {"input_power", 5.0},
-                                                                  {"modulation", 0.25},
-                                                                  {"bus_voltage", 5.5},
-                                                                  {"vehicle_speed", 1.5},
-                                                                  {"age", 3.5},
-                                                                  {"temperature", 43.0},
-                                                                  {"temperature_difference", 1.0},
-                                                                  {"neighbour_difference", 3.5},
-                                                                  {"column", 7.5},
-                                                                  {"column_2", 8.5},
-                                                                  {"column_3", 9.5}};
+  expected.insert(expected.end(), {{"current_speed_squared", at.current_rms_A * 9.0},
+                                   {"temperature", 43.0},
+                                   {"temperature_difference", 1.0},
+                                   {"neighbour_difference", 3.5},
+                                   {"column", 7.5},
+                                   {"column_2", 8.5},
+                                   {"column_3", 9.5}});
   EXPECT_EQ(expected.size(), type().parameters[driver].choices.size());
   for (const auto& [name, reading] : expected) {
     std::vector<double> line = parameters(name, "heat", -10.0, 50.0);

@@ -134,20 +134,11 @@ TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
     OperatingPoint<double> blind = at;
     blind.ambient_C = blind.resistive_headroom_V = none;
     if (!needs(Signal::current)) {
-      blind.current_rms_A = blind.copper_loss_W = none;
+      blind.copper_loss_W = none;
     }
-    if (!needs(Signal::speed)) {
-      blind.speed_mean_rad_per_s = blind.speed_rms_rad_per_s = blind.velocity_rad_per_s = blind.acceleration_rad_per_s2 = none;
-    }
-    for (const auto& [signal, quantity] : {std::pair{Signal::shaft_power, &OperatingPoint<double>::shaft_power_W},
-                                           {Signal::input_power, &OperatingPoint<double>::input_power_W},
-                                           {Signal::modulation, &OperatingPoint<double>::modulation_ratio},
-                                           {Signal::bus_voltage, &OperatingPoint<double>::bus_V},
-                                           {Signal::vehicle_speed, &OperatingPoint<double>::vehicle_speed_m_per_s},
-                                           {Signal::neighbour_temperature, &OperatingPoint<double>::neighbour_C},
-                                           {Signal::age, &OperatingPoint<double>::age_h}}) {
-      if (!needs(signal)) {
-        blind.*quantity = none;
+    for (const OperatingQuantity<double>& row : kQuantities<double>) {
+      if (row.signal && !needs(*row.signal)) {
+        blind.*row.value = none;
       }
     }
     const std::vector<double> seeing_W = heat_W(type(), at, parameters, temperature_C);
@@ -292,15 +283,20 @@ TEST_P(EveryCandidate, books_heat_in_proportion_to_its_size) {
 /// At typical size and in a typical state the heat must be plausible for a motor of about 50 W.
 TEST_P(EveryCandidate, of_typical_size_books_watts) {
   for (const std::vector<double>& variant : type().candidacy.variants) {
-    static_assert(kSignalCount == 9, "a further signal needs its usual value here");
-    OperatingPoint<double> at{.current_rms_A = 5.0, .speed_mean_rad_per_s = 500.0, .speed_rms_rad_per_s = 500.0};
+    OperatingPoint<double> at;
+    for (std::size_t row = 0; row < kQuantityCount; ++row) {
+      if (kQuantities<double>[row].signal && !kQuantities<double>[row].column.empty()) {
+        set_quantity(at, row, kQuantities<double>[row].usual.value());
+      }
+    }
+    at.current_rms_A = 5.0;
+    at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = 500.0;
     at.shaft_power_W = 50.0;
     at.input_power_W = 65.0;
     at.bus_V = 24.0;
     at.modulation_ratio = 0.6;
     at.vehicle_speed_m_per_s = 2.0;
     at.neighbour_C = 60.0;
-    at.known = kNeighbour;
     at.copper_loss_W = 10.0;
     std::vector<double> temperature_C;
     for (const NodeRole& role : type().nodes) {

@@ -54,7 +54,6 @@ inline std::vector<double> random_parameters(Chance& chance, const EffectType& t
 
 /// Draws an operating point from all permitted ranges, with a consistent `copper_loss_W`.
 inline OperatingPoint<double> random_point(Chance& chance) {
-  static_assert(kQuantityCount == 20, "a further quantity needs its range here");
   OperatingPoint<double> at;
   at.current_rms_A = chance.between(0.0, 100.0);
   at.speed_mean_rad_per_s = chance.between(0.0, 2000.0);
@@ -71,6 +70,12 @@ inline OperatingPoint<double> random_point(Chance& chance) {
   at.velocity_rad_per_s = at.speed_mean_rad_per_s * chance.between(-1.0, 1.0);
   at.acceleration_rad_per_s2 = chance.between(0.0, 1e4);
   at.copper_loss_W = chance.between(0.0, 500.0);
+  // Signals without a range above.
+  for (const OperatingQuantity<double>& quantity : kQuantities<double>) {
+    if (quantity.signal && at.*quantity.value == OperatingPoint<double>{}.*quantity.value) {
+      at.*quantity.value = chance.between(0.0, 2.0 * quantity.usual.value());
+    }
+  }
   return at;
 }
 

@@ -266,6 +266,7 @@ std::string unwatched_signals(const Source& source, std::string_view input) {
   std::string text;
   for (const observed::Signal signal : source.signals) {
     switch (observed::signals()[static_cast<std::size_t>(signal)].without_power) {
+      case thermal::WithoutPower::unstated:
       case thermal::WithoutPower::zero:
       case thermal::WithoutPower::any:
         break;
@@ -350,8 +351,8 @@ std::string memory_functions(const Source& source, unsigned signature) {
       {"@", source.prefix}};
   return fmt::format("\n#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_MOST_COOLING_STEPS {2}\n#define {0}_MOST_HEATING_STEPS {3}\n",
                      source.capital, signature, kMostCoolingSteps, kMostHeatingSteps) +
-         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + laws_of_any_age(source, words) + replaced(kCool, words) +
-         replaced(kUnsaved, words) + replaced(kRestore, words);
+         resting_temperatures(source, guard_C, nominal_C) + "\n" + replaced(kPacked, words) + laws_of_any_age(source, words) +
+         replaced(kCool, words) + replaced(kUnsaved, words) + replaced(kRestore, words);
 }
 
 }  // namespace heatsoak::derate::c_header

@@ -23,6 +23,7 @@ double start_value(const Derating& derating, const observed::SignalSpec& signal)
       return derating.rules.hottest_ambient_C;
     case thermal::WithoutPower::winding_limit:
       return derating.rules.limits.winding_C;
+    case thermal::WithoutPower::unstated:
     case thermal::WithoutPower::zero:
     case thermal::WithoutPower::any:
       break;

@@ -40,7 +40,7 @@ EffectType pwm_ripple_loss() {
           "same speed separates them.",
       // 1.6 W · 4 · 0.25 · 0.75 · (12/24)² = 1.6 · 0.75 · 0.25 = 0.3 W, three quarters of it to the winding
       .example = {.parameters = {1.6, 0.25},
-                  .at = {.bus_V = 12.0, .modulation_ratio = 0.25},
+                  .at = {.modulation_ratio = 0.25, .bus_V = 12.0},
                   .temperature_C = {40.0, 35.0},
                   .expected_heat_W = {0.225, 0.075}},
       .laws = laws<PwmRippleLoss>(),

@@ -10,24 +10,9 @@ enum Node { hot, cold, watched, reference };
 enum Parameter { driver, form, first_knot, last_knot, first_value };
 constexpr int kKnots = 7;
 
-constexpr auto kIsInputSignal = [](const OperatingQuantity<double>& each) { return each.is_input_signal; };
-constexpr std::size_t kSignalDrivers = std::ranges::count_if(kQuantities<double>, kIsInputSignal);
-
-/// Rows of the table of quantities that can be the input signal.
-constexpr std::array<std::size_t, kSignalDrivers> kRows = [] {
-  std::array<std::size_t, kSignalDrivers> rows{};
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < kQuantityCount; ++row) {
-    if (kIsInputSignal(kQuantities<double>[row])) {
-      rows[count++] = row;
-    }
-  }
-  return rows;
-}();
-
 /// Input signals that are no single quantity; they follow the others.
 enum Regressor {
-  current_speed_squared = kSignalDrivers,
+  current_speed_squared = base::kCurveSignalCount,
   temperature,
   temperature_difference,
   neighbour_difference,
@@ -36,9 +21,9 @@ enum Regressor {
 };
 constexpr std::array<base::Choice, driver_count> kDrivers = [] {
   std::array<base::Choice, driver_count> choices{};
-  for (std::size_t i = 0; i < kSignalDrivers; ++i) {
-    const OperatingQuantity<double>& quantity = kQuantities<double>[kRows[i]];
-    choices[i] = {quantity.name, quantity.unit, quantity.meaning};
+  for (std::size_t i = 0; i < base::kCurveSignalCount; ++i) {
+    const base::SignalRow& row = base::kSignals[base::kCurveSignals[i]];
+    choices[i] = {row.name, row.unit, row.curve_meaning};
   }
   choices[current_speed_squared] = {"current_speed_squared", "A rad2/s2", "product |I|·ω²"};
   choices[temperature] = {"temperature", "degC", "temperature of the node 'watched'"};
@@ -80,7 +65,7 @@ S value_of_driver(const Situation<S>& x) {
       if (chosen_driver >= column) {
         return x.at.*kQuantities<S>[column_row(static_cast<std::size_t>(chosen_driver - column))].value;
       }
-      return x.at.*kQuantities<S>[kRows[static_cast<std::size_t>(chosen_driver)]].value;
+      return x.at.*kQuantities<S>[base::kCurveSignals[static_cast<std::size_t>(chosen_driver)]].value;
   }
 }
 
@@ -134,8 +119,8 @@ std::vector<Signal> needs_of(std::span<const double> values) {
   static const std::array<std::vector<Signal>, kForms.size()> kOfForm{{{}, {Signal::current}, {}, {Signal::current}, {Signal::speed}}};
   const auto chosen_driver = static_cast<std::size_t>(values[driver]);
   std::vector<Signal> needed;
-  if (chosen_driver < kSignalDrivers) {
-    needed = {kQuantities<double>[kRows[chosen_driver]].signal.value()};
+  if (chosen_driver < base::kCurveSignalCount) {
+    needed = {base::kSignals[base::kCurveSignals[chosen_driver]].signal.value()};
   } else if (chosen_driver == current_speed_squared) {
     needed = {Signal::current, Signal::speed};
   } else if (chosen_driver == neighbour_difference) {
