@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../../support/measured_data.h"
+#include "../../support/study_words.h"
 #include "estimation/thresholds.h"
 #include "measured_cases.h"
 #include "scoring.h"
@@ -283,13 +284,15 @@ void study(Group& group, const std::vector<std::string_view>& wanted) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::vector<std::string_view> wanted(argv + 1, argv + argc);
-  for (const estimation::ThresholdSpec& spec : estimation::kThresholds) {
-    if (argc < 2) {
-      wanted.push_back(spec.name);
+int run(const StudyWords& words) {
+  std::vector<std::string_view> names;
+  std::ranges::transform(estimation::kThresholds, std::back_inserter(names), &estimation::ThresholdSpec::name);
+  std::vector<std::string_view> wanted = names;
+  std::ranges::transform(priors(), std::back_inserter(names), &PriorSpec::name);
+  if (words.has(0)) {
+    wanted.assign(words.all().begin(), words.all().end());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      static_cast<void>(words.one_of(i, names));
     }
   }
   std::vector<Group> all = groups();
@@ -302,4 +305,13 @@ int main(int argc, char** argv) {
     }
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr const char* kUsage =
+      "usage: heatsoak_attribution_ablation [NAME…]\n\n"
+      "  NAME  a threshold of estimation/thresholds.h or a prior; all thresholds without one\n";
+  return run_study(argc, argv, kUsage, 100, run);
 }

@@ -10,6 +10,7 @@
 #include <map>
 #include <string>
 
+#include "../../support/study_words.h"
 #include "scoring.h"
 
 namespace {
@@ -333,36 +334,47 @@ bool examine_named(Marks& marks, std::string_view name, double size, std::uint64
   return found > 0;
 }
 
-int usage() {
-  fmt::print(stderr,
-             "usage: heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [calibrated N] [hard N]\n"
-             "         [interval N] [effect NAME SIZE SEED]\n"
-             "example: heatsoak_attribution_table nothing 10 single 1\n");
-  return 2;
-}
+constexpr const char* kUsage =
+    "usage: heatsoak_attribution_table [nothing N] [single N] [pair N] [outside N] [unlogged N] [calibrated N] [hard N]\n"
+    "         [interval N] [effect NAME SIZE SEED]\n"
+    "example: heatsoak_attribution_table nothing 10 single 1\n";
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(const StudyWords& words) {
   const std::map<std::string, void (*)(Marks&, int)> parts{
       {"nothing", examine_nothing},    {"single", examine_singles},        {"pair", examine_pairs},     {"outside", examine_outsiders},
       {"unlogged", examine_strangers}, {"calibrated", examine_calibrated}, {"hard", examine_hardships}, {"interval", examine_intervals},
   };
   Marks marks;
-  for (int i = 1; i < argc; i += 2) {
-    const auto part = parts.find(argv[i]);
-    if (part != parts.end() && i + 1 < argc && std::atoi(argv[i + 1]) > 0) {
-      part->second(marks, std::atoi(argv[i + 1]));
-    } else if (std::string_view(argv[i]) == "effect" && i + 3 < argc &&
-               examine_named(marks, argv[i + 1], std::atof(argv[i + 2]), static_cast<std::uint64_t>(std::atoi(argv[i + 3])))) {
-      i += 2;
-    } else {
-      return usage();
+  // Two passes, so that no case runs for hours before a wrong word is found.
+  for (const bool is_rehearsal : {true, false}) {
+    for (std::size_t i = 0; i == 0 || words.has(i); i += 2) {
+      const std::string& name = words.required(i, "what to examine");
+      if (name == "effect") {
+        const std::string& effect = words.required(i + 1, "NAME");
+        static_cast<void>(words.required(i + 3, "SEED"));
+        const double size = words.positive(i + 2, "SIZE", 1.0);
+        const std::uint64_t seed = words.whole(i + 3, "SEED", 0, 1);
+        if (!is_rehearsal && !examine_named(marks, effect, size, seed)) {
+          throw WrongWord(fmt::format("there is no effect {}", effect));
+        }
+        i += 2;
+        continue;
+      }
+      const auto part = parts.find(name);
+      if (part == parts.end()) {
+        throw WrongWord(fmt::format("'{}' is not known", name));
+      }
+      static_cast<void>(words.required(i + 1, "N"));
+      const auto count = static_cast<int>(words.whole(i + 1, "N", 1, 1));
+      if (!is_rehearsal) {
+        part->second(marks, count);
+      }
     }
-  }
-  if (marks.cases == 0) {
-    return usage();
   }
   print_table(marks);
   return meets_targets(marks) ? 0 : 1;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return run_study(argc, argv, kUsage, 100, run); }

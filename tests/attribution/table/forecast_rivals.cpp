@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "../../support/study_words.h"
 #include "base/parallel.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
@@ -162,11 +163,11 @@ void summarise(const std::vector<Result>& results, int runs) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const auto first = static_cast<std::uint64_t>(argc > 1 ? std::atoi(argv[1]) : 1);
-  const auto seeds = static_cast<std::uint64_t>(argc > 2 ? std::atoi(argv[2]) : 1);
+int run(const StudyWords& words) {
+  const std::uint64_t first = words.whole(0, "FIRST_SEED", 0, 1);
+  const std::uint64_t seeds = words.whole(1, "SEEDS", 1, 1);
+  const std::vector<int> run_counts =
+      words.has(2) ? std::vector{static_cast<int>(words.whole(2, "RUNS", 1, 1, 3))} : std::vector{1, 2, 3};
   struct Task {
     std::string name;
     int runs;
@@ -175,7 +176,7 @@ int main(int argc, char** argv) {
   };
   std::vector<Task> tasks;
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-    for (const int runs : argc > 3 ? std::vector{std::atoi(argv[3])} : std::vector{1, 2, 3}) {
+    for (const int runs : run_counts) {
       const auto add = [&](const std::string& name, const Missing& missing, std::uint64_t own) {
         Dice dice(own * 31 + 7);
         Case sealed;
@@ -207,7 +208,14 @@ int main(int argc, char** argv) {
     }
     fmt::print("  {} {}\n", kSources[static_cast<std::size_t>(each.source)], each.accepted);
   }
-  for (const int runs : argc > 3 ? std::vector{std::atoi(argv[3])} : std::vector{1, 2, 3}) {
+  for (const int runs : run_counts) {
     summarise(results, runs);
   }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_study(argc, argv, "usage: heatsoak_forecast_rivals [FIRST_SEED [SEEDS [RUNS]]]\n", 3, run);
 }

@@ -1,15 +1,11 @@
 // Writes the synthetic logs of reports/soak, see soak_scenario.h. Every run writes the same bytes.
 //   heatsoak_soak_example FOLDER [SEED]     (500, or another seed for other loads and noise)
-#include <fmt/format.h>
-
-#include <string>
-
+#include "../../support/study_words.h"
 #include "soak_scenario.h"
 
 int main(int argc, char** argv) {
-  if (argc != 2 && argc != 3) {
-    fmt::print(stderr, "usage: heatsoak_soak_example FOLDER [SEED]\n");
-    return 2;
-  }
-  heatsoak::attribution::truth::write_soak_logs(argc == 3 ? std::stoull(argv[2]) : 500, argv[1]);
+  return heatsoak::run_study(argc, argv, "usage: heatsoak_soak_example FOLDER [SEED]\n", 2, [](const heatsoak::StudyWords& words) {
+    heatsoak::attribution::truth::write_soak_logs(words.whole(1, "SEED", 0, 500), words.required(0, "FOLDER"));
+    return 0;
+  });
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "../../support/study_words.h"
 #include "base/parallel.h"
 #include "study.h"
 
@@ -120,12 +121,10 @@ void tabulate_local(std::uint64_t seed) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const int cases = argc > 1 ? std::stoi(argv[1]) : 300;
-  const std::string which = argc > 2 ? argv[2] : "";
-  const std::uint64_t first_seed = argc > 3 ? std::stoull(argv[3]) : 1;
+int run(const StudyWords& words) {
+  const auto cases = static_cast<int>(words.whole(0, "CASES", 1, 300));
+  const std::string which = words.one_of(1, {"both", "two", "stator", "lost", "resistance", "local"});
+  const std::uint64_t first_seed = words.whole(2, "FIRST_SEED", 0, 1);
   if (which.empty() || which == "both") {
     tabulate("winding and stator sensed", {}, {}, cases, first_seed);
   }
@@ -151,4 +150,15 @@ int main(int argc, char** argv) {
     tabulate_local(first_seed);
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  constexpr const char* kUsage =
+      "usage: heatsoak_calibration_table [CASES [both|two|stator|lost|resistance|local [FIRST_SEED]]]\n\n"
+      "  CASES       per table, 300 without it\n"
+      "  both …      one table instead of all\n"
+      "  FIRST_SEED  1 without it\n";
+  return run_study(argc, argv, kUsage, 3, run);
 }

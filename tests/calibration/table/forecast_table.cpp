@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "../../support/measured_data.h"
+#include "../../support/study_words.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
 #include "estimation/fit.h"
@@ -158,27 +159,36 @@ void examine(const Case& one, int threads) {
   }
 }
 
-}  // namespace
-}  // namespace heatsoak::calibration
-
-/// Arguments: parts of the names of the wanted cases; without arguments all cases run.
-int main(int argc, char** argv) {
+int run(const StudyWords& words) {
   constexpr int kSkipped = 77;
-  if (!heatsoak::measured_data("tasrv_uav_motor")) {
+  if (!measured_data("tasrv_uav_motor")) {
     // The form in which GoogleTest reports it, for .ci/list_skipped.
-    fmt::print("{}:{}: Skipped\n{}\n", __FILE__, __LINE__, heatsoak::why_no_measured_data("tasrv_uav_motor"));
+    fmt::print("{}:{}: Skipped\n{}\n", __FILE__, __LINE__, why_no_measured_data("tasrv_uav_motor"));
     return kSkipped;
+  }
+  const std::vector<Case> cases = all_cases();
+  const auto is_part = [](const Case& one, const std::string& part) { return one.name.find(part) != std::string::npos; };
+  for (const std::string& part : words.all()) {
+    if (std::ranges::none_of(cases, [&](const Case& one) { return is_part(one, part); })) {
+      throw WrongWord(fmt::format("no case has '{}' in its name", part));
+    }
   }
   fmt::print(
       "| predicted | file | innovations | free runs, least squares | written | in the 90 % band, % | by | pieces | extensions | s |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const heatsoak::calibration::Case& one : heatsoak::calibration::all_cases()) {
-    const bool is_wanted =
-        argc < 2 || std::any_of(argv + 1, argv + argc, [&](const char* part) { return one.name.find(part) != std::string::npos; });
-    if (is_wanted) {
-      heatsoak::calibration::examine(one, 1);
+  for (const Case& one : cases) {
+    if (!words.has(0) || std::ranges::any_of(words.all(), [&](const std::string& part) { return is_part(one, part); })) {
+      examine(one, 1);
       std::fflush(stdout);
     }
   }
   return 0;
+}
+
+}  // namespace
+}  // namespace heatsoak::calibration
+
+int main(int argc, char** argv) {
+  return heatsoak::run_study(argc, argv, "usage: heatsoak_forecast_table [PART…]\n\n  PART  part of the names of the wanted cases; all without one\n",
+                             100, heatsoak::calibration::run);
 }

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -24,6 +23,7 @@
 #include "report/chart.h"
 #include "select/evaluate.h"
 #include "support/shipped.h"
+#include "support/study_words.h"
 
 namespace heatsoak::derate::studies {
 namespace {
@@ -428,22 +428,15 @@ void run(const std::filesystem::path& folder, std::uint64_t trials, double minut
 }  // namespace heatsoak::derate::studies
 
 int main(int argc, char** argv) {
-  try {
-    const std::filesystem::path folder = argc > 1 ? std::filesystem::path(argv[1]) : heatsoak::kSource / "reports" / "derate";
-    std::uint64_t trials = 1'000'000;
-    if (argc > 2) {
-      const std::string_view text(argv[2]);
-      std::from_chars(text.data(), text.data() + text.size(), trials);
-    }
-    double minutes = std::numeric_limits<double>::infinity();
-    if (argc > 3) {
-      const std::string_view text(argv[3]);
-      std::from_chars(text.data(), text.data() + text.size(), minutes);
-    }
-    heatsoak::derate::studies::run(folder, trials, minutes);
+  constexpr const char* kUsage =
+      "usage: heatsoak_worst_use [FOLDER [TRIALS [MINUTES]]]\n\n"
+      "  FOLDER   an existing folder; reports/derate without it\n"
+      "  TRIALS   per class, 1000000 without it; 0 only draws the picture again from the table in FOLDER\n"
+      "  MINUTES  for all classes, unlimited without it\n";
+  return heatsoak::run_study(argc, argv, kUsage, 3, [](const heatsoak::StudyWords& words) {
+    const std::filesystem::path folder = words.folder(0, heatsoak::kSource / "reports" / "derate");
+    const std::uint64_t trials = words.whole(1, "TRIALS", 0, 1'000'000);
+    heatsoak::derate::studies::run(folder, trials, words.positive(2, "MINUTES", std::numeric_limits<double>::infinity()));
     return 0;
-  } catch (const std::exception& problem) {
-    fmt::print(stderr, "{}\n", problem.what());
-    return 70;
-  }
+  });
 }

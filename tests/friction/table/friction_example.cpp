@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "support/shipped.h"
+#include "support/study_words.h"
 #include "test_drive.h"
 
 namespace heatsoak::friction {
@@ -46,13 +47,12 @@ std::vector<DriveRow> thinned(const std::vector<DriveRow>& rows) {
 
 int main(int argc, char** argv) {
   using namespace heatsoak;
-  if (argc != 2) {
-    fmt::print(stderr, "usage: heatsoak_friction_example FOLDER\n");
-    return 2;
-  }
-  const robot::PlantConfig plant = robot::make_plant(friction::with_dirty_wheel(twente()), ecx_32().nominal, friction::kPlantPeriod_s);
-  const std::filesystem::path folder(argv[1]);
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "steady_state_test.csv") << friction::csv_of(
-      friction::thinned(friction::DriveOnPlant(plant, friction::headings_of_a_circle(), 7).rows()), plant.body.kinematics.wheel_count);
+  return run_study(argc, argv, "usage: heatsoak_friction_example FOLDER\n", 1, [](const StudyWords& words) {
+    const robot::PlantConfig plant = robot::make_plant(friction::with_dirty_wheel(twente()), ecx_32().nominal, friction::kPlantPeriod_s);
+    const std::filesystem::path folder(words.required(0, "FOLDER"));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "steady_state_test.csv") << friction::csv_of(
+        friction::thinned(friction::DriveOnPlant(plant, friction::headings_of_a_circle(), 7).rows()), plant.body.kinematics.wheel_count);
+    return 0;
+  });
 }

@@ -13,6 +13,7 @@
 #include "base/diagnostic.h"
 #include "base/files.h"
 #include "support/shipped.h"
+#include "support/study_words.h"
 
 namespace heatsoak::simulate::studies {
 
@@ -69,22 +70,14 @@ struct Study {
 constexpr Study kStudies[] = {
     {"low_speed", study_low_speed}, {"planners", study_planners_in_match}, {"guard", study_guard}, {"costs", study_costs}};
 
-int run(const std::vector<std::string>& words) {
-  const bool is_known =
-      words.size() < 2 || std::ranges::any_of(kStudies, [&](const Study& study) { return words.size() == 2 && words[1] == study.name; });
-  if (!is_known || (!words.empty() && words.front().starts_with("-"))) {
-    const bool is_help = words == std::vector<std::string>{"--help"} || words == std::vector<std::string>{"-h"};
-    fmt::print(is_help ? stdout : stderr, "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]\n");
-    return is_help ? 0 : 2;
-  }
-  const Report report{words.empty() ? kSource / "reports" / "drive_core" : std::filesystem::path(words.front())};
-  if (!std::filesystem::is_directory(report.folder)) {
-    fmt::print(stderr, "{} is no folder; make it first\n", report.folder.string());
-    return 2;
-  }
+int run(const StudyWords& words) {
+  const Report report{words.folder(0, kSource / "reports" / "drive_core")};
+  std::vector<std::string_view> names;
+  std::ranges::transform(kStudies, std::back_inserter(names), &Study::name);
+  const std::string wanted = words.one_of(1, names);
   const Subject subject{twente(), ecx_32()};
   for (const Study& study : kStudies) {
-    if (words.size() > 1 && words[1] != study.name) {
+    if (!wanted.empty() && wanted != study.name) {
       continue;
     }
     const auto start = std::chrono::steady_clock::now();
@@ -99,10 +92,9 @@ int run(const std::vector<std::string>& words) {
 }  // namespace heatsoak::simulate::studies
 
 int main(int argc, char** argv) {
-  try {
-    return heatsoak::simulate::studies::run({argv + 1, argv + argc});
-  } catch (const std::exception& problem) {
-    fmt::print(stderr, "{}\n", problem.what());
-    return 70;
-  }
+  constexpr const char* kUsage =
+      "usage: heatsoak_drive_core_studies [FOLDER [low_speed|planners|guard|costs]]\n\n"
+      "  FOLDER       an existing folder; reports/drive_core without it\n"
+      "  low_speed …  one study instead of all\n";
+  return heatsoak::run_study(argc, argv, kUsage, 2, heatsoak::simulate::studies::run);
 }
