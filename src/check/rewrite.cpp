@@ -50,6 +50,9 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
       outcome.not_rewritten = LimitInvalid{parsed.problem};
       continue;
     }
+    if (limit.value == 0.0 && outcome.passed() && !keeps(limit.type->direction, parsed.value, 0.0)) {
+      continue;  // "never" must not become "a little" unnoticed
+    }
     if (std::optional<Looseness> found = looseness(parsed.value, text, *limit.type, *outcome.check)) {
       // The limit is not changed, so that a motor above its own limit still fails.
       outcome.not_rewritten = std::move(*found);

@@ -23,7 +23,8 @@ ThresholdType derating_excess() {
               "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also "
               "fails if it is of another motor or its observer differs from a "
               "fresh one. The default of 400 drawn motors takes up to 3 s per motor; write and check the table with derate = { samples = "
-              "\"60\" } for half of that. The limit of --update leaves 0.05 A if the value is 0",
+              "\"60\" } for half of that. --update leaves 0.05 A if the value is 0, but keeps a limit of 0 A that "
+              "holds",
           .example = "at most 0 A",
           .needs = {Setting::robot, Setting::motor, Setting::table},
           .takes = {Setting::conditions, Setting::derate},
