@@ -34,9 +34,28 @@ Inputs& inputs() {
   return all;
 }
 
+/// Returns the absolute path of the file that the path names, which may not exist yet. weakly_canonical() alone does not follow a link to
+/// a missing file. Sets `problem` if the links lead in a circle.
+std::filesystem::path without_links(const std::filesystem::path& path, std::error_code& problem) {
+  namespace fs = std::filesystem;
+  constexpr int kMostLinks = 40;  // as Linux
+  fs::path target = fs::absolute(path, problem);
+  for (int link = 0; link < kMostLinks && !problem; ++link) {
+    target = fs::weakly_canonical(target, problem);
+    std::error_code no_link;
+    const fs::path next = fs::read_symlink(target, no_link);
+    if (no_link || problem) {
+      return target;
+    }
+    target = target.parent_path() / next;  // an absolute `next` replaces the folder
+  }
+  problem = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+  return target;
+}
+
 std::filesystem::path without_links(const std::filesystem::path& path) {
   std::error_code missing;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(path), missing);
+  return without_links(path, missing);
 }
 
 }  // namespace
@@ -210,10 +229,12 @@ OutputTarget target_of(const std::filesystem::path& path) {
     cannot_write(path, errno);
   }
   const bool in_place = exists && !S_ISREG(about.st_mode);
-  std::error_code no_link;
-  const std::filesystem::path target = exists && !in_place ? std::filesystem::canonical(path, no_link)
-                                                           : std::filesystem::weakly_canonical(std::filesystem::absolute(path), no_link);
-  return {no_link ? path : target, in_place};
+  std::error_code problem;
+  std::filesystem::path target = without_links(path, problem);
+  if (problem && !in_place) {
+    cannot_write(path, problem.value());
+  }
+  return {problem ? path : std::move(target), in_place};
 }
 
 }  // namespace

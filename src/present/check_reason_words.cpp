@@ -104,9 +104,14 @@ std::string some_of(std::vector<std::string> names) {
 }
 
 std::string say(const check::NumberMissing& of, const check::Limit& /*limit*/) {
+  const std::string group = of.group.empty() ? "the answer" : fmt::format("'{}'", of.group);
+  if (of.members.empty()) {
+    return fmt::format("there is no '{}' in {}, which has no members; `--json -` behind the command shows the numbers that it has",
+                       of.missing, group);
+  }
   const std::string advice = base::did_you_mean(std::string_view(of.missing).substr(0, of.missing.find('.')), of.members);
-  return fmt::format("there is no '{}' in {}{}", of.missing, of.group.empty() ? "the answer" : fmt::format("'{}'", of.group),
-                     advice.empty() ? fmt::format("; expected one of {}", of.members.empty() ? "…" : some_of(of.members)) : advice);
+  return fmt::format("there is no '{}' in {}{}", of.missing, group,
+                     advice.empty() ? fmt::format("; expected one of {}", some_of(of.members)) : advice);
 }
 
 std::string say(const check::NumberIsGroup& of, const check::Limit& /*limit*/) {

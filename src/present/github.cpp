@@ -14,9 +14,18 @@ namespace {
 std::string in_markdown(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    result += c == '|' ? "\\|" : c == '\n' ? "<br>" : c == '<' ? "&lt;" : std::string(1, c);
+    result += c == '|' ? "\\|" : c == '\n' ? "<br>" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
   }
   return result;
+}
+
+/// Returns the text as code in a cell of a Markdown table. GitHub shows references such as &lt; in code as they are written.
+std::string as_code(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
+  }
+  return result.find('`') == std::string::npos ? fmt::format("`{}`", result) : fmt::format("`` {} ``", result);
 }
 
 /// Escapes the data and the properties of a GitHub workflow command.
@@ -35,8 +44,8 @@ std::string summary_markdown(std::span<const check::Outcome> outcomes, std::stri
   std::string text = fmt::format("### heatsoak check: {}\n\n", conclusion_words(outcomes));
   text += "| | check | threshold | value | limit | margin | |\n|---|---|---|--:|--:|--:|---|\n";
   for (const check::Outcome& each : outcomes) {
-    text += fmt::format("| {} | {} | `{}` | {} | {} | {} | {} |\n", each.passed() ? "✅" : "❌", in_markdown(each.check->name),
-                        in_markdown(each.limit.type->name), value_words(each), limit_words(each), margin_words(each),
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", each.passed() ? "✅" : "❌", in_markdown(each.check->name),
+                        as_code(each.limit.type->name), value_words(each), limit_words(each), margin_words(each),
                         in_markdown(explanation_words(each)));
   }
   return text + fmt::format("\nheatsoak {}\n", version);

@@ -97,6 +97,28 @@ TEST_F(Files, a_link_stays_a_link_to_a_file_with_its_permissions) {
   EXPECT_EQ(fs::status(folder_ / "private.json").permissions(), fs::perms{0600});
 }
 
+TEST_F(Files, a_link_to_a_file_that_does_not_exist_yet_stays_a_link) {
+  fs::create_directory(folder_ / "runs");
+  fs::create_symlink("runs/latest.json", folder_ / "near.json");
+  fs::create_symlink(folder_ / "near.json", folder_ / "far.json");
+  write_file(folder_ / "far.json", "now");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "far.json"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "near.json"));
+  EXPECT_EQ(read_file(folder_ / "runs/latest.json", kMost_bytes), "now");
+  fs::remove(folder_ / "runs/latest.json");
+  EXPECT_TRUE(are_one_file(folder_ / "far.json", folder_ / "runs/latest.json"));
+}
+
+TEST_F(Files, a_link_into_a_missing_folder_or_to_itself_is_no_target) {
+  fs::create_symlink("none/latest.json", folder_ / "lost.json");
+  fs::create_symlink("circle.json", folder_ / "circle.json");
+  for (const char* name : {"lost.json", "circle.json"}) {
+    EXPECT_THROW(write_file(folder_ / name, "now"), Failure) << name;
+    EXPECT_TRUE(fs::is_symlink(folder_ / name)) << name;
+  }
+  EXPECT_THAT(names(), testing::UnorderedElementsAre("circle.json", "lost.json"));
+}
+
 TEST_F(Files, of_which_one_cannot_be_written_all_stay_away) {
   const std::vector<OutputFile> files{{folder_ / "a", "1"}, {folder_ / "none" / "b", "2"}};
   try {

@@ -140,6 +140,17 @@ TEST_F(Outcomes, AreAMarkdownTable) {
     }
   }
   EXPECT_EQ(rows, 5);
+  EXPECT_THAT(text, HasSubstr("| a &lt;b&gt; &amp; \"c\" \\| 100 %"));
+}
+
+// GitHub shows code as it is written, so references such as &lt; must not stand in it.
+TEST_F(Outcomes, NamesOfNumbersAreCodeInTheMarkdownTable) {
+  check::ThresholdType type = *check::find_threshold("current_margin");
+  type.name = "motors.a<b&c|d.*";
+  outcomes_[0].limit.type = &type;
+  EXPECT_THAT(summary_markdown(outcomes_, "1.2.3"), HasSubstr("| `motors.a<b&c\\|d.*` |"));
+  type.name = "a`b\nc";
+  EXPECT_THAT(summary_markdown(outcomes_, "1.2.3"), HasSubstr("| `` a`b c `` |"));
 }
 
 }  // namespace
