@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kStep_share = 0.2F;
 constexpr float kVeryLong_s = 1e9F;
+constexpr float kUnknown_s = -1.0F;
 
 /// Signals during power-off: no current, speed or airflow. Unknown temperatures take their highest safe value, rates that of any age.
 void signals_without_power(const GuardModel& model, float* signal) {
@@ -70,7 +71,7 @@ void cool_for(const GuardModel& model, float* signal, float step_s, float* state
   }
 }
 
-/// Cools the nodes for a time; for an unknown one (negative or NaN) each node takes the highest temperature that it can have had. After
+/// Cools the nodes for a time; for an unknown one (negative) each node takes the highest temperature that it can have had. After
 /// kMostCoolingSteps steps each node is at most as far above its resting temperature as the node that is farthest above.
 void cool_guard(const GuardModel& model, float elapsed_s, float* state_C) {
   const bool is_known = elapsed_s >= 0.0F;
@@ -107,13 +108,15 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
     start_guard(model, state, model.winding_limit_C);
     return Restored::nothing;
   }
+  // A clock that divides by zero gives an infinite time.
+  const float known_s = elapsed_s < kVeryLong_s ? elapsed_s : kUnknown_s;
   const bool has_board = board_C >= model.coldest_ambient_C - 1.0F && board_C <= 1000.0F;
   const float least_C = has_board ? board_C : model.hottest_ambient_C;
   float state_C[kMostGuardNodes] = {};
   for (int node = 0; node < model.node_count; ++node) {
     state_C[node] = saved.state_C[node];
   }
-  cool_guard(model, elapsed_s, state_C);
+  cool_guard(model, known_s, state_C);
   start_guard(model, state, model.winding_limit_C);
   for (int node = 0; node < model.node_count; ++node) {
     state.state_C[node] = larger(state_C[node], least_C);
@@ -121,7 +124,7 @@ Restored restore_guard(const GuardModel& model, GuardState& state, const GuardSt
   set_gap(state, gap_s(saved));
   state.hidden_A2 = saved.hidden_A2;
   seal(state);
-  return elapsed_s >= 0.0F ? Restored::cooled : Restored::time_unknown;
+  return known_s >= 0.0F ? Restored::cooled : Restored::time_unknown;
 }
 
 namespace {

@@ -18,6 +18,7 @@ namespace heatsoak::derate {
 namespace {
 
 constexpr float kUnknown_s = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoSensor_C = std::numeric_limits<float>::quiet_NaN();
 
 class Memory : public testing::Test {
  protected:
@@ -101,8 +102,15 @@ TEST_F(Memory, AfterAnUnknownTimeNoNodeIsColderThanItMayBe) {
   }
   EXPECT_TRUE(is_reached) << "the assumption is one that can happen";
   EXPECT_EQ(assumed_C[0], motor.temperatures_C(2)[0]);
-  ModelGuard negative(guard());
-  EXPECT_EQ(negative.restore(motor.saved(2), -1.0F, 0.0F, 20.0F), CompiledGuard::time_unknown);
+  constexpr float kInfinite_s = std::numeric_limits<float>::infinity();
+  for (const float elapsed_s : {-1.0F, -kInfinite_s, kInfinite_s, std::numeric_limits<float>::max(), 1e9F}) {
+    ModelGuard other(guard());
+    EXPECT_EQ(other.restore(motor.saved(2), elapsed_s, 0.0F, 20.0F), CompiledGuard::time_unknown) << elapsed_s;
+    EXPECT_EQ(other.temperatures_C(2), assumed_C) << elapsed_s;
+  }
+  ModelGuard rested(guard());
+  EXPECT_EQ(rested.restore(motor.saved(2), 9.9e8F, 0.0F, 20.0F), CompiledGuard::restored);
+  EXPECT_LT(rested.temperatures_C(2)[0], assumed_C[0]);
 }
 
 TEST_F(Memory, NoNodeIsColderThanTheBoard) {
@@ -255,14 +263,20 @@ TEST_F(Memory, WhatWasNeverStartedIsNotSaved) {
   EXPECT_EQ(after.restore(zero.saved(2), 1.0F, 0.0F, 25.0F), CompiledGuard::nothing_restored);
 }
 
-/// Regenerates the committed table of docs/power_off.md.
-std::string power_off_table(const CompiledGuard& guard, const std::vector<unsigned char>& hot) {
+std::vector<float> in_single(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+/// Regenerates the committed text of docs/power_off.md from the header; `start_C`: every node before the loss of power.
+std::string power_off_table(const CompiledGuard& guard, const std::vector<double>& start_C) {
   struct Case {
     const char* name;
     float elapsed_s;
     bool is_whole;
   };
-  std::string text = "| after | allowed after 1 s, A | after 10 s, A | after 60 s, A |\n|---|---|---|---|\n";
+  ModelGuard before(guard);
+  before.start(100.0F);
+  const std::vector<unsigned char> hot = with_temperatures(before.saved(start_C.size()), in_single(start_C));
+  std::string text = fmt::format("(observer: winding {:.0f} °C, stator {:.0f} °C; air at 40 °C).\n\n", start_C[0], start_C[1]);
+  text += "| after | allowed after 1 s, A | after 10 s, A | after 60 s, A |\n|---|---|---|---|\n";
   for (const Case& each :
        {Case{"no loss of power", 0.0F, true}, Case{"2 s without power", 2.0F, true}, Case{"30 s", 30.0F, true}, Case{"5 min", 300.0F, true},
         Case{"1 h", 3600.0F, true}, Case{"an unknown time", kUnknown_s, true}, Case{"a damaged buffer", 2.0F, false}}) {
@@ -271,7 +285,7 @@ std::string power_off_table(const CompiledGuard& guard, const std::vector<unsign
       std::vector<unsigned char> buffer = hot;
       buffer[5] ^= each.is_whole ? 0U : 1U;
       ModelGuard motor(guard);
-      motor.restore(buffer, each.elapsed_s, 0.0F, 25.0F);
+      motor.restore(buffer, each.elapsed_s, 0.0F, kNoSensor_C);
       CompiledGuard::Output out;
       for (int i = 0; i < static_cast<int>(std::lround(time_s / 0.01)); ++i) {
         out = motor.step({0.0F, 0.0F, 40.0F});
@@ -284,11 +298,39 @@ std::string power_off_table(const CompiledGuard& guard, const std::vector<unsign
 }
 
 TEST_F(Memory, TheDocumentsTableIsWhatTheHeaderDoes) {
-  // Drives until every node is at its hottest permitted temperature.
-  const std::string table = power_off_table(guard(), driven(60'000).saved(2));
+  const PowerOffReport report = power_off_report(ecx_derating());
+  const std::string table = power_off_table(guard(), report.start_C);
   std::stringstream page;
   page << std::ifstream(kSource / "docs/power_off.md").rdbuf();
   EXPECT_THAT(page.str(), testing::HasSubstr(table)) << "put this into docs/power_off.md:\n" << table;
+  for (const PowerOffCase& each : report.cases) {
+    EXPECT_THAT(page.str(), testing::HasSubstr(fmt::format("| {} | {:.1f} |\n", each.name, fmt::join(each.allowed_A, " | "))))
+        << "as heatsoak derate --explain shows it";
+  }
+}
+
+// No continuous use makes a node hotter than the temperatures with which the document and --explain begin, and one use reaches them. Those
+// are steady states at the last current of a use, up to 0.1 K below the guard's own.
+TEST_F(Memory, TheDocumentBeginsWithTheHottestContinuousUse) {
+  const std::vector<double> start_C = power_off_report(ecx_derating()).start_C;
+  std::vector<double> reached_C(2, 0.0);
+  const auto most_speed_rad_per_s = static_cast<float>(ecx_derating().rules.most_speed_rad_per_s);
+  for (int tenths = 0; tenths <= 10; ++tenths) {
+    ModelGuard motor(guard());
+    motor.start(120.0F);
+    float allowed_A = 0.0F;
+    for (int i = 0; i < 120'000; ++i) {
+      allowed_A = motor.step({allowed_A, 0.1F * static_cast<float>(tenths) * most_speed_rad_per_s, 40.0F}).allowed_A;
+    }
+    for (std::size_t node = 0; node < 2; ++node) {
+      const auto found_C = static_cast<double>(motor.temperatures_C(2)[node]);
+      EXPECT_LE(found_C, start_C[node] + 0.2) << node << " at " << tenths << "/10 of the highest speed";
+      reached_C[node] = std::max(reached_C[node], found_C);
+    }
+  }
+  for (std::size_t node = 0; node < 2; ++node) {
+    EXPECT_NEAR(reached_C[node], start_C[node], 0.5) << node;
+  }
 }
 
 class PowerOffReportTest : public testing::TestWithParam<const char*> {};

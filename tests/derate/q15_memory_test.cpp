@@ -193,7 +193,7 @@ TEST_F(Q15Memory, CoolsAsTheNetworkDoesAndNoFaster) {
 
 TEST_F(Q15Memory, AfterAnUnknownTimeNoNodeIsColderThanItMayBe) {
   const IntegerMotor motor = driven(3000);
-  for (const int unknown_ms : {kUnknownTime_ms, std::numeric_limits<int>::min()}) {
+  for (const int unknown_ms : {kUnknownTime_ms, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()}) {
     IntegerMotor unknown(guard());
     EXPECT_EQ(unknown.restore(motor.saved(), unknown_ms, 0, 20'000), CompiledGuard::time_unknown);
     const std::vector<double> assumed_C = unknown.temperatures_C();

@@ -76,6 +76,25 @@ TEST(GuardMemory, UnknownTimeIsAsHotAsAnyTime) {
   }
 }
 
+// Clocks that divide by zero or overflow. The longest known time is just below.
+TEST(GuardMemory, ATimeThatIsNotFiniteIsUnknown) {
+  const Config config = make_config(4);
+  const GuardState saved = worked(*config.guard, 600);
+  GuardState unknown;
+  restore_guard(*config.guard, unknown, saved, kUnknown_s, 20.0F);
+  constexpr float kInfinite_s = std::numeric_limits<float>::infinity();
+  for (const float elapsed_s : {kInfinite_s, -kInfinite_s, std::numeric_limits<float>::max(), 1e9F, -1.0F}) {
+    GuardState found;
+    EXPECT_EQ(restore_guard(*config.guard, found, saved, elapsed_s, 20.0F), Restored::time_unknown) << elapsed_s;
+    for (int node = 0; node < config.guard->node_count; ++node) {
+      EXPECT_EQ(found.state_C[node], unknown.state_C[node]) << elapsed_s << " " << node;
+    }
+  }
+  GuardState rested;
+  EXPECT_EQ(restore_guard(*config.guard, rested, saved, 9.9e8F, 20.0F), Restored::cooled);
+  EXPECT_LT(rested.state_C[0], unknown.state_C[0]);
+}
+
 TEST(GuardMemory, AFlippedBitCountsAsAtTheLimit) {
   const Config config = make_config(4);
   const GuardState saved = worked(*config.guard, 1000);

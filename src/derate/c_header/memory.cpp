@@ -130,7 +130,7 @@ static inline void @_cool_for(@_law law, const @_input *off, float step_s, float
   }
 }
 
-/* Cools without current in the hottest air; elapsed_s negative or NaN: for an unknown time, so that each node takes the highest temperature
+/* Cools without current in the hottest air; elapsed_s negative: for an unknown time, so that each node takes the highest temperature
    that it can have had. In the time beyond the largest number of steps, each node is at most as far above its resting temperature as the
    node that is farthest above. */
 static inline void @_cool(@_law law, const float *resting_C, float elapsed_s, float *state_C) {
@@ -223,12 +223,14 @@ constexpr std::string_view kLoadsOfSpeeds = R"(    for (speed = 0; speed < @SPEE
 )";
 
 constexpr std::string_view kRestore =
-    R"(/* elapsed_s: time without power, from a clock that kept running; negative or NaN: unknown. After an unknown time each node takes the
-   highest temperature that it can have had since the save, heat from the other nodes included, because power may have returned at once.
+    R"(/* elapsed_s: time without power, from a clock that kept running; negative, not finite or 1e9 s or more: unknown. After an unknown time each
+   node takes the highest temperature that it can have had since the save, heat from the other nodes included, because power may have
+   returned at once.
    unsaved_s: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; NaN counts as very long.
    board_C: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, float elapsed_s, float unsaved_s, float board_C) {
   const float least_C = @_is_temperature(board_C) ? board_C : @CAP@_HOTTEST_AMBIENT_C;
+  const float known_s = elapsed_s < 1e9f ? elapsed_s : -1.0f;
   int node;
   bool is_whole = @_unpack(buffer) == @CAP@_SIGNATURE &&
                   @_unpack(&buffer[@CAP@_SAVED_SIZE - 4]) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4);
@@ -247,8 +249,8 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     @_heat(@GUARD_LAW@, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->state_C);
     @_heat(@NOMINAL_LAW@, unsaved_s < 1e9f ? unsaved_s : 1e9f, state->nominal_C);
   }
-  @_cool(@GUARD_LAW@, @_resting_C, elapsed_s, state->state_C);
-  @_cool(@NOMINAL_LAW@, @NOMINAL_RESTING@, elapsed_s, state->nominal_C);
+  @_cool(@GUARD_LAW@, @_resting_C, known_s, state->state_C);
+  @_cool(@NOMINAL_LAW@, @NOMINAL_RESTING@, known_s, state->nominal_C);
   for (node = 0; node < @NODES@; ++node) {
     state->state_C[node] = state->state_C[node] > least_C ? state->state_C[node] : least_C;
     state->nominal_C[node] = state->nominal_C[node] > least_C ? state->nominal_C[node] : least_C;
@@ -256,7 +258,7 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, f
     state->nominal_carry_K[node] = 0.0f;
   }
   state->started = @CAP@_STARTED;
-  return elapsed_s >= 0.0f ? @_restored : @_time_unknown;
+  return known_s >= 0.0f ? @_restored : @_time_unknown;
 }
 
 )";

@@ -186,14 +186,16 @@ static inline void @_heat(int32_t unsaved_ms, int64_t *stored) {
 )";
 
 constexpr std::string_view kRestore =
-    R"(/* elapsed_ms: time without power, from a clock that kept running; negative: unknown. After an unknown time each node takes the highest
-   temperature that it can have had since the save, heat from the other nodes included, because power may have returned at once.
+    R"(/* elapsed_ms: time without power, from a clock that kept running; negative or INT32_MAX (a converted infinity): unknown. After an
+   unknown time each node takes the highest temperature that it can have had since the save, heat from the other nodes included, because
+   power may have returned at once.
    unsaved_ms: longest time from the last save to the loss of power; 0 if the falling supply triggers the save; negative: very long.
    board_mC: lower bound of every node, because the motor was in the same surroundings; an implausible value counts as the hottest air. */
 static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, int32_t elapsed_ms, int32_t unsaved_ms, int32_t board_mC) {
   const int64_t board = ((int64_t)board_mC * @CAP@_STORED_PER_K) / 1000;
   const int64_t hottest_air = ((int64_t)@CAP@_HOTTEST_AMBIENT_MC * @CAP@_STORED_PER_K) / 1000;
   const int64_t least = @_is_temperature(board) ? board : hottest_air;
+  const int32_t known_ms = (elapsed_ms < INT32_MAX) ? elapsed_ms : -1;
   int32_t node;
   bool is_whole = (@_unpack(buffer, 4) == @CAP@_SIGNATURE) &&
                   (@_unpack(&buffer[@CAP@_SAVED_SIZE - 4], 4) == heatsoak_crc_32(buffer, @CAP@_SAVED_SIZE - 4));
@@ -208,12 +210,12 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, i
   if (unsaved_ms != 0) {
     @_heat(unsaved_ms, state->stored);
   }
-  @_cool(elapsed_ms, state->stored);
+  @_cool(known_ms, state->stored);
   for (node = 0; node < @NODES@; ++node) {
     state->stored[node] = (state->stored[node] > least) ? state->stored[node] : least;
   }
   state->started = @CAP@_STARTED;
-  return (elapsed_ms >= 0) ? @_restored : @_time_unknown;
+  return (known_ms >= 0) ? @_restored : @_time_unknown;
 }
 
 )";
