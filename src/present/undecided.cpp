@@ -52,9 +52,9 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
   std::vector<std::string> words;
   std::ranges::transform(needs, std::back_inserter(words), &std::pair<int, std::string>::second);
   return fmt::format(
-      "{} motors are undecided, because the share of their samples over a limit, or short of the demand, is close to a threshold; the "
-      "JSON output has their verdicts so far. Values of --samples that decide with a probability of 50 % to 90 %: {}.",
-      motors.size(), fmt::join(words, "; "));
+      "{} motors are undecided: after so few {}, the share of motors over a limit, or short of the demand, may lie on either side of a "
+      "threshold; the JSON output has their verdicts so far. Values of --samples that decide with a probability of 50 % to 90 %: {}.",
+      motors.size(), unit_of(*motors.front()), fmt::join(words, "; "));
 }
 
 }  // namespace
