@@ -80,7 +80,11 @@ TEST(Output, keeps_links_and_devices) {
   EXPECT_TRUE(json::parse(content_of(folder.path() / "real.json")).contains("schema"));
   EXPECT_EQ(run(kShortSteady + Words{"--json", "/dev/null"}, inside).exit_code, 0);
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
-  EXPECT_THAT(folder.names(), UnorderedElementsAre("link.json", "real.json"));
+  fs::create_symlink("later.json", folder.path() / "dangling.json");
+  EXPECT_EQ(run(kShortSteady + Words{"--json", "dangling.json"}, inside).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "dangling.json"));
+  EXPECT_TRUE(json::parse(content_of(folder.path() / "later.json")).contains("schema"));
+  EXPECT_THAT(folder.names(), UnorderedElementsAre("dangling.json", "later.json", "link.json", "real.json"));
 }
 
 TEST(Output, of_two_options_is_not_one_file) {

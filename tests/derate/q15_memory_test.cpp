@@ -19,6 +19,7 @@ namespace heatsoak::derate {
 namespace {
 
 constexpr int kUnknownTime_ms = -1;
+constexpr int kLongest_ms = std::numeric_limits<int>::max() - 1;
 constexpr double kPerK = 4294967296.0;
 
 constexpr const char* kIntegerWrapper = R"(#include "guard.h"
@@ -180,7 +181,7 @@ TEST_F(Q15Memory, ATwoSecondResetChangesNothingThatTwoSecondsWouldNot) {
 TEST_F(Q15Memory, CoolsAsTheNetworkDoesAndNoFaster) {
   const IntegerMotor motor = driven(12'000);
   const thermal::Network network = motor::datasheet_network(ecx_32(), motor::nominal_sample(ecx_32()));
-  for (const int elapsed_ms : {1, 500, 2000, 10'000, 45'000, 120'000, 600'000, 3'600'000, std::numeric_limits<int>::max()}) {
+  for (const int elapsed_ms : {1, 500, 2000, 10'000, 45'000, 120'000, 600'000, 3'600'000, kLongest_ms}) {
     const std::vector<double> exact_C = cooled_exactly_C(network, motor.temperatures_C(), 1e-3 * elapsed_ms);
     IntegerMotor after(guard());
     after.restore(motor.saved(), elapsed_ms, 0, 20'000);
