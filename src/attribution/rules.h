@@ -29,7 +29,7 @@ struct SelectionRules {
   int pool_of_three = 5;
   int best_grown = 25;
   int most_rounds = 5;           ///< largest number of rounds
-  bool scans_regressors = true;  ///< searches curves over signals, too
+  bool scans_regressors = true;  ///< true: the search also tries curves over signals
 };
 
 }  // namespace heatsoak::attribution

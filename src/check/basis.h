@@ -36,11 +36,13 @@ struct MarginBasis {
   double current_rms_A = 0.0;  ///< current of the nominal motor in the duty
 };
 
+/// Place where a committed table allows most more than a fresh one.
 struct ExcessBasis {
   derate::TablePlace excess;
   double lost_A = 0.0;  ///< largest deficit elsewhere
 };
 
+/// Place where a committed table allows most less than a fresh one.
 struct LostBasis {
   derate::TablePlace lost;
 };
@@ -98,7 +100,7 @@ enum class Compared {
   number,        ///< the number, which is exact
   interval,      ///< the worse end of its 95 % interval
   percentile,    ///< the number, although it is a percentile: the answer has no interval for it
-  probability,   ///< likewise, a probability
+  probability,   ///< the probability: the answer has no interval for it
   nominal_time,  ///< the time of the nominal motor
   nominal        ///< the value of the nominal motor
 };

@@ -27,7 +27,7 @@ struct CommittedTable {
   std::optional<CurrentTable> table;  ///< only from a C header
   std::vector<CommittedRow> rows;     ///< only from a CSV table: the full grid, winding varies fastest
   std::string motor_id;               ///< named at the beginning of the file; empty if the file names none
-  std::string robot_id;               ///< likewise
+  std::string robot_id;               ///< named at the beginning of the file; empty if the file names none
   bool has_sensor = false;            ///< a C header with a temperature sensor
   std::string sensor_flags;           ///< sensor_flags() of that sensor; empty if the header does not state them
   std::string version;                ///< version of the program that wrote the file, base::program_version(); empty if not stated

@@ -19,7 +19,8 @@
 
 namespace heatsoak::derate {
 
-/// A load pattern that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case.
+/// A use of the motor that always draws the full allowed current, continuously or in pulses, at constant speed in one hot case. Texts call
+/// it a use.
 struct LoadPattern {
   double speed_share = 0.0;  ///< speed as a share of the rules' highest speed
   double on_s = 0.0;         ///< length of a pulse; 0: continuous
@@ -32,7 +33,7 @@ struct LoadPattern {
 /// Returns continuous and pulsed patterns at several speeds: all of them in the plain case, a selection in every other hot case.
 std::vector<LoadPattern> hardest_patterns(const Observer& observer, const BarrierRules& rules);
 
-/// Result of one use: the current that the firmware allows, and the temperatures of its observer.
+/// Simulation of one use: the current that the firmware allows, and the temperatures of its observer.
 struct UsePlayed {
   LoadPattern use;
   std::vector<thermal::Interval> intervals;  ///< inputs of the motor's network

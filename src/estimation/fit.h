@@ -19,7 +19,7 @@ namespace heatsoak::estimation {
 struct FitSetup {
   std::vector<int> merged;               ///< per run, number of samples per average
   std::vector<Eigen::VectorXd> weights;  ///< per run and sample: 0 for samples that the model excludes as wrong; empty: all 1
-  double mean_heat_W = 0.0;              ///< see usual_heat_W()
+  double mean_heat_W = 0.0;              ///< heat of the runs that the fit compares unknown heat with, from usual_heat_W()
   double material_W = 0.0;               ///< unknown heat that warms the outermost body by `material_K`; scale of the grid
   FluxGrid grid;
 

@@ -11,7 +11,7 @@ struct WheelLoopPlant {
   double volt_per_Nm = 0.0;                 ///< R/(K_t·n), per torque at the wheel, without gear loss
   double gear_efficiency = 1.0;             ///< motor to ground
   double wheel_inertia_kg_m2 = 0.0;         ///< inertia of a wheel in the air, rotor included
-  double loaded_inertia_kg_m2 = 0.0;        ///< the same plus the wheel's share of the robot's mass
+  double loaded_inertia_kg_m2 = 0.0;        ///< inertia of a wheel on the ground: with its share of the robot's mass
   double hardest_body_inertia_kg_m2 = 0.0;  ///< inertia of the body per wheel in the direction of travel with the largest one
 };
 

@@ -16,7 +16,7 @@ struct BlockMedians {
   std::vector<double> begin_s;
   std::vector<double> duration_s;
   Eigen::MatrixXd raw;         ///< signals × blocks; NaN if too few rows of the block have a value
-  Eigen::MatrixXd values;      ///< same, with a running median of three blocks against single outliers
+  Eigen::MatrixXd values;      ///< running median of three blocks of `raw`, against single outliers
   Eigen::VectorXd resolution;  ///< per signal: resolution of the sensor; 0 if no quantisation is visible
   Eigen::VectorXd top;         ///< per signal: 95th percentile of the blocks' magnitudes
 };

@@ -18,7 +18,7 @@ struct VoltageFrom {
     modulation,                       ///< times the logged battery voltage
     modulation_with_nominal_battery,  ///< times `battery_V`, the robot's nominal battery voltage; the logs have none
     current,                          ///< with the motor's resistance and torque constant
-    current_without_sign              ///< same, with the sign of the speed
+    current_without_sign              ///< from the current, with the sign of the speed
   };
   Source source = Source::log;
   double battery_V = 0.0;

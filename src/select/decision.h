@@ -11,9 +11,9 @@
 
 namespace heatsoak::select {
 
-/// Returns the number of samples of the first look of evaluate_until_decided(). If no sample exceeds a limit, this number suffices to
-/// decide that the probability is at most kMarginalProbability; 72 independent draws are needed at the error of that look. `is_drawn`: the
-/// duty draws games.
+/// Returns the number of samples after which evaluate_until_decided() first tests whether the verdict is decided; such a test is a look. If
+/// no sample exceeds a limit, this number suffices to decide that the probability is at most kMarginalProbability; 72 independent draws are
+/// needed at the error of that look. `is_drawn`: the duty draws games.
 int first_samples(bool is_drawn);
 
 /// Returns the probability of a wrong verdict that a look after `count` independent draws (games, or samples of a duty without draws) may
@@ -48,13 +48,14 @@ int most_samples(const duty::Duty& duty);
 /// Returns whether games up to `most` samples decide the verdict with a probability of at least 20 %, and it is not decided yet.
 bool is_worth_another_round(const Prospect& prospect, int most);
 
-/// Returns the largest number of samples that a user can request. A drawn game takes 0.6 MB and 0.07 s of one core, which limits the number.
+/// Returns the largest number of samples that a user can request. A drawn game takes 0.6 MB and 0.07 s of one core, which limits the
+/// number.
 int most_samples_at_all(bool is_drawn);
 
 /// Draws demands as draw_demands() does, evaluates with `options.samples`, then doubles the samples of the motors whose verdict is not
 /// decided, up to `most`. On a duty with draws, where games take nearly all of the time, a motor gets more samples only while
-/// is_worth_another_round(). A longer round starts with the samples of the shorter one. `draws` receives all drawn demands; `options.draws` is not
-/// used. The result is sorted as by evaluate().
+/// is_worth_another_round(). A longer round starts with the samples of the shorter one. `draws` receives all drawn demands; `options.draws`
+/// is not used. The result is sorted as by evaluate().
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
                                                     std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,
                                                     EvaluateOptions options, int most, std::vector<duty::WheelDemand>& draws,

@@ -20,7 +20,7 @@ struct QuantisedTable {
   std::vector<std::int16_t> heat;  ///< in units of unit_mA2, in the order of CurrentTable::heat_per_ohm_A2
   std::uint32_t unit_mA2 = 1;
   std::int32_t resistance_at_first = 1;  ///< resistance ratio at the first winding point, in 2^-20, rounded up
-  std::int32_t resistance_per_mK = 0;    ///< its rise, in 2^-40 per 0.001 K, rounded up
+  std::int32_t resistance_per_mK = 0;    ///< rise of the resistance ratio, in 2^-40 per 0.001 K, rounded up
   std::int32_t most_current_mA = 0;
   std::int32_t straight_below_mA = 1;
   std::int32_t most_speed_mrad_per_s = 0;
