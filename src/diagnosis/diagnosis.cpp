@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -273,7 +274,10 @@ void settle_turning_rows(DiagnosisInput& input) {
   }
   std::vector<estimation::MeasuredRun> turning;
   std::ranges::transform(input.train, std::back_inserter(turning), estimation::turning_within_rows);
-  if (estimation::evidence_nats(input.model, turning) <= estimation::evidence_nats(input.model, input.train)) {
+  std::array<double, 2> nats{};
+  base::in_parallel(nats.size(), 0,
+                    [&](std::size_t i) { nats[i] = estimation::evidence_nats(input.model, i == 0 ? input.train : turning); });
+  if (nats[1] <= nats[0]) {
     return;
   }
   input.train = std::move(turning);
