@@ -15,7 +15,7 @@ std::string settling_words(const simulate::JerkSweep& sweep) {
       best = &each;
     }
   }
-  return fmt::format("with an acceleration of {:.1f} m/s² the drives settle first, after {:.2f} s, with {}", own_m_per_s2, best->settled_s,
+  return fmt::format("at its own acceleration of {:.1f} m/s² it settles earliest, after {:.2f} s, with {}", own_m_per_s2, best->settled_s,
                      best->is_bang_bang() ? "bang-bang" : fmt::format("a jerk limit of {:.1f} m/s³", best->limits.jerk_m_per_s3));
 }
 

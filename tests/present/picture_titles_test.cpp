@@ -86,10 +86,9 @@ TEST(Titles, AJerkSweepStatesTheLimitThatSettlesFirst) {
     result.settled_s = settled_s;
     sweep.results.push_back(result);
   }
-  EXPECT_EQ(jerk_sweep_chart(sweep).title,
-            sweep.robot.name +
-                ": with an acceleration of 3.0 m/s² the drives settle first, after 1.20 s, with a jerk limit "
-                "of 20.0 m/s³");
+  EXPECT_EQ(jerk_sweep_chart(sweep).title, sweep.robot.name +
+                                               ": at its own acceleration of 3.0 m/s² it settles earliest, after 1.20 s, with a jerk limit "
+                                               "of 20.0 m/s³");
 }
 
 }  // namespace
