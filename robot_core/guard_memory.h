@@ -18,8 +18,9 @@ enum class Restored {
 };
 
 /// Sets `state` to `saved`, cooled for `elapsed_s` without current in the hottest air. A time that is negative, not finite or 1e9 s or more
-/// is unknown: each node then gets its highest temperature, heat from the other nodes included. No node is colder than `board_C`; an implausible `board_C` counts as
-/// the hottest air. Evaluates the law at most (5 + (nodes + 1)/4)·kMostCoolingSteps times, for each possible age.
+/// is unknown: each node then gets its highest temperature, heat from the other nodes included. No node is colder than `board_C`; an
+/// implausible `board_C` counts as the hottest air. Evaluates the law at most (5 + (nodes + 1)/4)·kMostCoolingSteps times, for each
+/// possible age.
 Restored restore_guard(const GuardModel& model, GuardState& state, const GuardState& saved, float elapsed_s, float board_C);
 
 inline constexpr int kMostCoolingSteps = 1024;

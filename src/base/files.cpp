@@ -38,7 +38,7 @@ Inputs& inputs() {
 /// a missing file. Sets `problem` if the links lead in a circle.
 std::filesystem::path without_links(const std::filesystem::path& path, std::error_code& problem) {
   namespace fs = std::filesystem;
-  constexpr int kMostLinks = 40;  // as Linux
+  constexpr int kMostLinks = 40;  // the limit of Linux
   fs::path target = fs::absolute(path, problem);
   for (int link = 0; link < kMostLinks && !problem; ++link) {
     target = fs::weakly_canonical(target, problem);

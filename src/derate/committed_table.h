@@ -100,7 +100,8 @@ inline constexpr std::string_view kIgnored = "0.05 % of the largest current";
 /// Compares a C header with a fresh one of the same form, on the grid of all breakpoints of both tables and just beyond the ends of the
 /// axes. This suffices, because both tables are piecewise linear in the copper heat. Compares a CSV table in its own rows. Ignores
 /// differences below kIgnored_share of the largest current, which rounding of the file may cause. In the other lines of a header, numbers
-/// that agree to 1 in 10⁴ count as equal. Throws Failure (bad_input) if an axis of a CSV table is shorter than that of the fresh table.
+/// with a relative difference of at most 1e-4 count as equal. Throws Failure (bad_input) if an axis of a CSV table is shorter than that of
+/// the fresh table.
 TableComparison compare(const CommittedTable& committed, const Derating& fresh);
 
 }  // namespace heatsoak::derate

@@ -105,8 +105,8 @@ bool heatsoak_core_start(heatsoak_core_state *state, bool is_rested, float body_
 
 /* After a loss of power, once after heatsoak_core_start(): restores the temperatures of the guards and the list of fitted sensors from a
  * copy of the state, which the firmware stores in backup RAM or flash after each step. `elapsed_s`: time without power; negative, not
- * finite or 1e9 s or more: unknown. No part becomes colder than `board_C`. Returns false if a wheel has no valid copy: its guard begins as hot as its
- * limit. May take some milliseconds; the linker leaves it out if it is not called. */
+ * finite or 1e9 s or more: unknown. No part becomes colder than `board_C`. Returns false if a wheel has no valid copy: its guard begins as
+ * hot as its limit. May take some milliseconds; the linker leaves it out if it is not called. */
 bool heatsoak_core_restore(heatsoak_core_state *state, const heatsoak_core_state *saved, float elapsed_s, float board_C);
 
 /* No samples, and the command to coast. */
