@@ -60,7 +60,7 @@ Json json(const select::MotorEvaluation& each) {
               {"winding_p95_ci95_C", json(each.winding_p95_interval_C, 2)},
               {"time_to_limit_s", rounded(each.time_to_limit_s, 3)},
               {"current_rms_A", rounded(each.current_rms_A, 4)},
-              {"verdict", select::to_string(each.verdict)},
+              {"verdict", select::to_string(select::stated_verdict(each))},
               {"decided", select::is_decided(each)},
               {"limiting_factor", select::to_string(each.limiting_factor)},
               {"data_quality", each.data_quality},

@@ -111,13 +111,12 @@ std::string title_of(const std::vector<select::MotorEvaluation>& results, const 
     return std::ranges::count_if(results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
   };
   const auto open = count(ShownVerdict::undecided);
-  const std::string verdict = results.front().samples == 0
-                                  ? fmt::format("Nominal values: {} of {} within the limits", count(ShownVerdict::nominal_within),
-                                                base::counted(results.size(), "motor"))
-                              : results.size() == 1
-                                  ? fmt::format("{}: {}", results.front().motor_id, to_string(shown_verdict(results.front())))
-                                  : fmt::format("{}{}", passing_text(count(ShownVerdict::pass), results.size(), "motor"),
-                                                open > 0 ? fmt::format(", {} undecided", open) : "");
+  const std::string verdict =
+      results.front().samples == 0 ? fmt::format("Nominal values: {} of {} within the limits", count(ShownVerdict::nominal_within),
+                                                 base::counted(results.size(), "motor"))
+      : results.size() == 1        ? fmt::format("{}: {}", results.front().motor_id, to_string(shown_verdict(results.front())))
+                                   : fmt::format("{}{}", passing_text(count(ShownVerdict::pass), results.size(), "motor"),
+                                          open > 0 ? fmt::format(", {} undecided", open) : "");
   return fmt::format("{}, {} on {}", verdict, robot.name, duty.id);
 }
 

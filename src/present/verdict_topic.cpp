@@ -11,9 +11,9 @@ std::vector<VerdictMeaning> verdict_meanings() {
   return {
       {select::Verdict::pass,
        fmt::format("With nominal values the motor stays within every temperature limit and delivers the demand. At most {:.0f} % of the "
-                   "samples exceed a limit, and at most {:.0f} % miss the demand. On a duty that is drawn, such as a match, most samples "
-                   "stay within the limits, and the upper end of the 95 % interval of the share over a limit is at most {:.0f} %.",
-                   rare_percent, rare_percent, rare_percent)},
+                   "samples exceed a limit, and at most {:.0f} % miss the demand. On a duty that is drawn, such as a match, the samples "
+                   "alone decide.",
+                   rare_percent, rare_percent)},
       {select::Verdict::marginal,
        fmt::format("As pass, but more than {:.0f} % of the samples exceed a limit or miss the demand.", rare_percent)},
       {select::Verdict::fail,
@@ -30,14 +30,16 @@ std::string undecided_meaning() {
   return fmt::format(
       "The interval of the share of samples over a limit contains the threshold of two verdicts ({:.0f} %, and {:.0f} % on a duty that "
       "is drawn). Without --samples the program doubles the samples of undecided motors up to five times: to 16 000, or to 2400 games "
-      "on a duty that is drawn, where it stops earlier if a decision has become improbable (less than 20 %). The answer states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, "
+      "on a duty that is drawn, where it stops earlier if a decision has become improbable (less than 20 %). The answer states with how "
+      "many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, "
       "give "
       "--samples one of these numbers. The interval allows for the repeated tests: the "
       "first may err with a probability of 2.5 %, each later one with 0.36 %, so a verdict is wrong with a probability of at most 5 % "
       "(Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is "
-      "decided, exit code and JSON use that of the samples so far; the JSON key decided is then false, and --fail-on undecided makes "
-      "the exit code 1. Without any samples (--samples 0) there is no verdict over tolerances: the answer then says within, over or short "
-      "for the nominal motor, and decided is false.",
+      "decided, JSON states marginal, whatever the number of samples, and the key decided is false; if one of fail and infeasible is "
+      "certain and only the other is open, it states the certain one. The exit code follows the worst verdict that the interval allows. "
+      "Without any samples (--samples 0) the answer says within, over or short for the nominal motor; decided is false, and JSON states "
+      "marginal in place of pass, because nothing is known about the tolerances.",
       100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/counted.h"
+#include "select/prospect.h"
 
 namespace heatsoak::present {
 
@@ -55,20 +56,10 @@ std::optional<OpenShare> open_share(const select::MotorEvaluation& motor) {
   if (!motor.samples_needed) {
     return std::nullopt;
   }
-  const std::array kinds{
-      OpenShare{false, motor.probability_over_limit.value_or(0.0), motor.probability_interval.value_or(select::Interval95{}), 0.0},
-      OpenShare{true, motor.short_probability.value_or(0.0), motor.short_interval.value_or(select::Interval95{}), 0.0}};
-  const bool is_bad = motor.verdict == select::Verdict::fail || motor.verdict == select::Verdict::infeasible;
-  for (const double threshold : {select::kMajority, select::kMarginalProbability}) {
-    for (OpenShare open : kinds) {
-      const bool counts = threshold == select::kMajority ? motor.games > 0 : !is_bad;
-      if (counts && open.interval.low <= threshold && open.interval.high > threshold) {
-        open.threshold_ratio = threshold;
-        return open;
-      }
-    }
-  }
-  return kinds.front();
+  const select::OpenThreshold first = select::open_thresholds(motor, motor.games > 0).at(0);
+  const bool is_of_demand = first.kind == select::kShareShort;
+  return OpenShare{is_of_demand, first.share_ratio, is_of_demand ? *motor.short_interval : *motor.probability_interval,
+                   first.threshold_ratio};
 }
 
 std::string words_of(const OpenShare& open, int samples) {

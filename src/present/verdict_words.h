@@ -14,8 +14,8 @@ namespace heatsoak::present {
 /// Verdict as it is displayed. Without samples it is only that of the nominal motor in one run, and has other names than a verdict.
 enum class ShownVerdict { pass, undecided, marginal, fail, infeasible, nominal_within, nominal_over, nominal_short };
 ShownVerdict shown_verdict(const select::MotorEvaluation& motor);
-/// Returns "pass", "undecided", …, and without samples "within", "over", "short". The JSON output keeps the more cautious verdict in place
-/// of "undecided", and that of the nominal motor in place of the last three.
+/// Returns "pass", "undecided", …, and without samples "within", "over", "short". The JSON output has
+/// select::stated_verdict() in place of "undecided" and of the last three.
 std::string_view to_string(ShownVerdict verdict);
 /// Returns the colour of a verdict.
 Tone tone_of(ShownVerdict verdict);

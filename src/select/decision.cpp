@@ -42,7 +42,39 @@ int needed_for(double threshold_ratio, double probability_ratio, int samples, bo
   return std::min(most, high) * per_draw;
 }
 
+LimitingFactor hotter_limit(const MotorEvaluation& result) {
+  return result.margin_K <= result.stator_margin_K.value_or(result.margin_K) ? LimitingFactor::winding_temperature
+                                                                             : LimitingFactor::stator_temperature;
+}
+
+/// Returns the only verdict that both intervals allow, or marginal if they cover a threshold. Without draws the nominal run has decided
+/// fail and infeasible; with draws it is only one of many games.
+Verdict verdict_of_shares(const MotorEvaluation& result, bool is_drawn) {
+  if (!is_drawn && result.verdict != Verdict::pass) {
+    return result.verdict;
+  }
+  if (is_drawn && result.short_interval->low > kMajority) {
+    return Verdict::infeasible;
+  }
+  if (is_drawn && result.probability_interval->low > kMajority) {
+    return Verdict::fail;
+  }
+  return std::max(result.probability_interval->high, result.short_interval->high) > kMarginalProbability ? Verdict::marginal
+                                                                                                         : Verdict::pass;
+}
+
 }  // namespace
+
+void decide_by_samples(MotorEvaluation& motor, bool is_drawn) {
+  const Verdict nominal = motor.verdict;
+  motor.verdict = verdict_of_shares(motor, is_drawn);
+  if (is_drawn || motor.verdict != nominal) {
+    const bool misses_demand = motor.verdict == Verdict::infeasible ||
+                               (motor.verdict == Verdict::marginal && motor.short_probability > motor.probability_over_limit);
+    motor.limiting_factor = motor.verdict == Verdict::pass ? LimitingFactor::none : misses_demand ? motor.short_limit : hotter_limit(motor);
+  }
+  motor.samples_needed = samples_needed(motor, is_drawn);
+}
 
 int first_samples(bool is_drawn) { return is_drawn ? kFirstGames * base::kLanes : kFirstSamples; }
 
@@ -54,12 +86,26 @@ double error_share(int count, bool is_drawn) {
 
 int most_samples_at_all(bool is_drawn) { return is_drawn ? 80'000 : 1'000'000; }
 
-std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
+std::optional<int> samples_needed(const MotorEvaluation& motor, bool is_drawn) {
   std::optional<int> most;
-  for (const auto& [threshold_ratio, share_ratio, kind] : open_thresholds(motor, short_interval, is_drawn)) {
+  for (const auto& [threshold_ratio, share_ratio, kind] : open_thresholds(motor, is_drawn)) {
     most = std::max(most.value_or(0), needed_for(threshold_ratio, share_ratio, motor.samples, is_drawn));
   }
   return most;
+}
+
+Verdict stated_verdict(const MotorEvaluation& motor) {
+  return motor.samples == 0 ? std::max(motor.verdict, Verdict::marginal) : motor.verdict;
+}
+
+Verdict worst_allowed_verdict(const MotorEvaluation& motor) {
+  Verdict worst = stated_verdict(motor);
+  for (const OpenThreshold& open : open_thresholds(motor, motor.games > 0)) {
+    if (open.threshold_ratio == kMajority) {
+      worst = std::max(worst, open.kind == kShareShort ? Verdict::infeasible : Verdict::fail);
+    }
+  }
+  return worst;
 }
 
 DecidingSamples deciding_samples(const MotorEvaluation& motor) {

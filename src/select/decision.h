@@ -26,10 +26,22 @@ double error_share(int count, bool is_drawn);
 /// Returns the number of samples at which the interval of the probability would exclude the threshold of the verdict, if the probability
 /// did not change; at most most_samples_at_all(). Returns nothing if the verdict is decided: the interval covers no threshold, or nominal
 /// values alone decide. If `is_drawn`, the duty has draws, and kMajority is a second threshold.
-std::optional<int> samples_needed(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn);
+std::optional<int> samples_needed(const MotorEvaluation& motor, bool is_drawn);
+
+/// Sets verdict, limiting factor and samples_needed from the shares and their intervals. The verdict is marginal while the intervals cover
+/// a threshold. Without draws the nominal run has decided fail and infeasible already.
+void decide_by_samples(MotorEvaluation& motor, bool is_drawn);
 
 /// Returns whether samples were drawn and more of them would not change the verdict.
 inline bool is_decided(const MotorEvaluation& motor) { return motor.samples > 0 && !motor.samples_needed; }
+
+/// Returns the verdict that JSON and ranking state. It does not depend on the number of samples until they decide: an undecided motor is
+/// marginal, and so is one that only the nominal run passes (no samples). A motor that misses the demand or exceeds a limit for certain is
+/// infeasible or fails, also while the other of the two is open.
+Verdict stated_verdict(const MotorEvaluation& motor);
+
+/// Returns the worst verdict that the samples still allow, for thresholds that must not pass by chance; stated_verdict() without samples.
+Verdict worst_allowed_verdict(const MotorEvaluation& motor);
 
 /// Numbers of samples with which the verdict is decided with a probability of 50 % and 90 %, counting the samples so far. Empty if not even
 /// most_samples_at_all() reach the probability.

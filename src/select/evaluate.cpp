@@ -353,21 +353,6 @@ void finish_band(Work& work, int samples) {
   }
 }
 
-LimitingFactor hotter_limit(const MotorEvaluation& result) {
-  return result.margin_K <= result.stator_margin_K.value_or(result.margin_K) ? LimitingFactor::winding_temperature
-                                                                             : LimitingFactor::stator_temperature;
-}
-
-/// Replaces the nominal verdict on a duty with draws, because the nominal run is only one of many games.
-void decide_by_majority(MotorEvaluation& result) {
-  result.verdict = result.short_probability > kMajority        ? Verdict::infeasible
-                   : result.probability_over_limit > kMajority ? Verdict::fail
-                                                               : Verdict::pass;
-  result.limiting_factor = result.verdict == Verdict::infeasible ? result.short_limit
-                           : result.verdict == Verdict::pass     ? LimitingFactor::none
-                                                                 : hotter_limit(result);
-}
-
 void conclude(Work& work, const EvaluateOptions& options) {
   MotorEvaluation& result = work.result;
   result.samples = options.samples;
@@ -380,9 +365,9 @@ void conclude(Work& work, const EvaluateOptions& options) {
     result.short_limit = by_current > by_voltage ? LimitingFactor::current : LimitingFactor::voltage;
   }
   if (options.samples > 0) {
+    const bool is_drawn = !options.draws.empty();
     result.probability_over_limit = static_cast<double>(std::ranges::count(work.over_limit, char{1})) / options.samples;
     result.short_probability = static_cast<double>(by_voltage + by_current) / options.samples;
-    const bool is_drawn = !options.draws.empty();
     const double wrong = error_share(is_drawn ? result.games : result.samples, is_drawn);
     const auto intervals_of = [&](std::span<const double> peak_C, std::span<const char> flags) {
       return is_drawn ? draw_intervals(peak_C, flags, {options.draws.size(), base::kLanes, options.seed}, wrong)
@@ -396,19 +381,10 @@ void conclude(Work& work, const EvaluateOptions& options) {
     std::ranges::transform(work.short_of_demand, std::back_inserter(is_short),
                            [](robot::DriveLimit limit) { return limit == robot::DriveLimit::none ? char{0} : char{1}; });
     result.short_interval = intervals_of(work.winding_peak_C, is_short).probability;
-  }
-  if (!options.draws.empty()) {
-    decide_by_majority(result);
-  }
-  // With few games a small observed share proves little, so the upper end of the interval decides.
-  const double over = options.draws.empty() ? result.probability_over_limit.value_or(0.0) : result.probability_interval->high;
-  if (result.verdict == Verdict::pass && std::max(over, result.short_probability.value_or(0.0)) > kMarginalProbability) {
-    result.verdict = Verdict::marginal;
-    result.limiting_factor = result.short_probability > result.probability_over_limit ? result.short_limit : hotter_limit(result);
-  }
-  result.samples_needed = samples_needed(result, result.short_interval.value_or(Interval95{}), !options.draws.empty());
-  if (options.with_bands && options.samples > 0) {
-    finish_band(work, options.samples);
+    decide_by_samples(result, is_drawn);
+    if (options.with_bands) {
+      finish_band(work, options.samples);
+    }
   }
 }
 

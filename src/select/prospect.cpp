@@ -51,16 +51,16 @@ double distance_sd(const Spread95& peak_C, double limit_C, double ambient_C) {
 
 }  // namespace
 
-std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn) {
-  const bool is_bad = motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible;
+std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, bool is_drawn) {
+  const bool is_nominal_bad = !is_drawn && (motor.verdict == Verdict::fail || motor.verdict == Verdict::infeasible);
   std::vector<OpenThreshold> open;
   // A motor that certainly misses the demand in most samples is infeasible, whatever its temperatures are.
-  const bool is_infeasible_for_certain = is_drawn && short_interval.low > kMajority;
-  if (motor.samples == 0 || (!is_drawn && is_bad) || is_infeasible_for_certain) {
+  const bool is_infeasible_for_certain = is_drawn && motor.short_interval && motor.short_interval->low > kMajority;
+  if (motor.samples == 0 || is_nominal_bad || is_infeasible_for_certain) {
     return open;
   }
   const std::array kinds{std::pair(motor.probability_over_limit.value_or(0.0), *motor.probability_interval),
-                         std::pair(motor.short_probability.value_or(0.0), short_interval)};
+                         std::pair(motor.short_probability.value_or(0.0), *motor.short_interval)};
   const auto add = [&](double threshold_ratio) {
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       const auto& [share_ratio, interval] = kinds.at(kind);
@@ -74,7 +74,7 @@ std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const I
   }
   // If one probability is certainly above the threshold, the motor is marginal, whatever the other is.
   const bool is_marginal_for_certain = std::ranges::any_of(kinds, [](const auto& kind) { return kind.second.low > kMarginalProbability; });
-  if (!is_bad && !is_marginal_for_certain) {
+  if (!is_marginal_for_certain) {
     add(kMarginalProbability);
   }
   return open;
@@ -83,7 +83,7 @@ std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const I
 Prospect::Prospect(const MotorEvaluation& motor) : motor_id_(motor.motor_id), is_drawn_(motor.games > 0) {
   draws_ = (motor.samples + per_draw() - 1) / per_draw();
   std::array<Share, 2> kinds;
-  for (const OpenThreshold& each : open_thresholds(motor, motor.short_interval.value_or(Interval95{}), is_drawn_)) {
+  for (const OpenThreshold& each : open_thresholds(motor, is_drawn_)) {
     Share& share = kinds.at(each.kind);
     share.thresholds_ratio.push_back(each.threshold_ratio);
     share.seen_count = std::round(each.share_ratio * draws_);

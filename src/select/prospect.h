@@ -10,15 +10,19 @@
 
 namespace heatsoak::select {
 
-/// A threshold that the interval of a share covers. `kind`: 0 share over the limit, 1 share short of the demand.
+/// Kinds of shares: samples over a temperature limit, and samples that miss the demand.
+inline constexpr std::size_t kShareOver = 0;
+inline constexpr std::size_t kShareShort = 1;
+
+/// A threshold that the interval of a share covers; `kind` is kShareOver or kShareShort.
 struct OpenThreshold {
   double threshold_ratio = 0.0;
   double share_ratio = 0.0;
   std::size_t kind = 0;
 };
-/// Returns the thresholds of the verdict that the intervals cover; none if the verdict is decided. On a duty with draws (`is_drawn`)
-/// `short_interval` and the majority count too.
-std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, const Interval95& short_interval, bool is_drawn);
+/// Returns the thresholds of the verdict that the intervals cover, the majority first; none if the verdict is decided. On a duty with draws
+/// (`is_drawn`) the majority counts too.
+std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, bool is_drawn);
 
 /// The shares that decide the verdict of a motor, as quantiles of their distributions.
 class Prospect {
@@ -60,7 +64,7 @@ class Prospect {
 
   std::string motor_id_;
   bool is_drawn_ = true;
-  int draws_ = 0;  ///< draws so far
+  int draws_ = 0;               ///< draws so far
   std::optional<bool> passes_;  ///< verdict if it is decided
   std::vector<Share> open_;     ///< shares whose side of a threshold is open
 };

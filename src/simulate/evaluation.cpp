@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
@@ -88,12 +89,8 @@ std::map<std::string, std::vector<select::RestOfHotMotor>> rests_of(const Evalua
 }  // namespace
 
 select::Verdict EvaluationAnswer::worst_verdict() const {
-  return ranks.empty() ? std::ranges::max_element(results, {}, &select::MotorEvaluation::verdict)->verdict
+  return ranks.empty() ? std::ranges::max(results | std::views::transform(select::worst_allowed_verdict))
                        : std::ranges::max_element(ranks, {}, &ClosedLoopRank::verdict)->verdict;
-}
-
-bool EvaluationAnswer::is_undecided() const {
-  return ranks.empty() && std::ranges::any_of(results, [](const select::MotorEvaluation& each) { return !select::is_decided(each); });
 }
 
 EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgress& progress) {
@@ -126,9 +123,10 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
   const auto later = [&](std::span<const select::Prospect> prospects) {
     std::vector<base::JobPhase> phases = job.closed_loop ? drive_phases(job.motors.size(), drive) : std::vector<base::JobPhase>();
     constexpr std::size_t kUsualOthers = 30;
-    const double probability = job.suggests        ? 1.0
-                               : prospects.empty() ? 0.0
-                                                   : 1.0 - subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability();
+    const double probability = job.suggests ? 1.0
+                               : prospects.empty()
+                                   ? 0.0
+                                   : 1.0 - subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability();
     phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, kUsualOthers), probability});
     return phases;
   };

@@ -62,11 +62,8 @@ struct EvaluationAnswer {
   /// requested.
   std::optional<SuggestedChanges> changes;
 
-  /// Returns the worst verdict of all motors; in closed loop that of the games.
+  /// Returns the worst verdict that the samples of any motor still allow; in closed loop the worst of the games.
   [[nodiscard]] select::Verdict worst_verdict() const;
-  /// Returns whether the verdict of a motor is not decided, because it needs more samples or none were drawn; false in closed loop, whose
-  /// games decide.
-  [[nodiscard]] bool is_undecided() const;
 };
 
 /// Runs the evaluation. Throws Failure (bad_input) if too many samples are requested, or a closed loop for a duty that is not a match.

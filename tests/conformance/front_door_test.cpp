@@ -386,12 +386,18 @@ TEST_F(FrontDoor, an_interrupt_on_a_terminal_ends_the_progress_line) {
   EXPECT_TRUE(result.out.ends_with("interrupted\r\n")) << result.out;
 }
 
-// A team whose CI must not accept a verdict that more samples could change.
-TEST_F(FrontDoor, fail_on_undecided_refuses_an_undecided_verdict) {
+// A team's CI must not accept a verdict that more samples could change, and its scripts must not see the verdict come and go.
+TEST_F(FrontDoor, an_undecided_motor_is_marginal_whatever_the_number_of_samples) {
   const std::string line =
-      "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2 --samples 60";
-  EXPECT_EQ(run_here(line).exit_code, 0);
-  EXPECT_EQ(run_here(line + " --fail-on undecided").exit_code, 1);
+      "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors nanotec_df45l024048_a2 --json - --samples ";
+  for (const std::string samples : {"0", "8", "60"}) {
+    const ProgramRun usual = run_here(line + samples);
+    EXPECT_EQ(usual.exit_code, 0) << samples;
+    EXPECT_EQ(usual.json().at("motors").at(0).at("verdict"), "marginal") << samples;
+    EXPECT_EQ(usual.json().at("motors").at(0).at("decided"), false) << samples;
+    EXPECT_EQ(run_here(line + samples + " --fail-on marginal").exit_code, 1) << samples;
+  }
+  EXPECT_EQ(run_here(line + "4000 --fail-on marginal").exit_code, 0);
 }
 
 // The computation takes seconds to minutes, so the user learns first that there will be no picture.

@@ -12,6 +12,7 @@
 
 #include "base/binomial_bound.h"
 #include "base/random.h"
+#include "select/spread.h"
 
 namespace heatsoak::select {
 namespace {
@@ -25,12 +26,11 @@ MotorEvaluation of_games(int over, int games, int missed = 0) {
   const base::ShareInterval interval = base::share_interval(share, games, error_share(games, true));
   const double missed_share = static_cast<double>(missed) / games;
   const base::ShareInterval missing = base::share_interval(missed_share, games, error_share(games, true));
-  motor.verdict = share > kMajority ? Verdict::fail : interval.high > kMarginalProbability ? Verdict::marginal : Verdict::pass;
   motor.probability_over_limit = share;
   motor.probability_interval = Interval95{interval.low, interval.high};
   motor.short_probability = missed_share;
   motor.short_interval = Interval95{missing.low, missing.high};
-  motor.samples_needed = samples_needed(motor, *motor.short_interval, true);
+  decide_by_samples(motor, true);
   return motor;
 }
 
@@ -132,11 +132,39 @@ TEST(DecidingSamples, are_predicted_from_a_single_game_too) {
   }
 }
 
+// Games with a known share over the limit: from one game on the verdict is marginal until it is decided, and then rarely wrong.
+TEST(StatedVerdict, does_not_depend_on_the_number_of_games_until_they_decide) {
+  constexpr int kMatches = 300;
+  for (const double share : {0.005, 0.03, 0.2, 0.45, 0.6, 0.95}) {
+    const Verdict right = share > kMajority ? Verdict::fail : share > kMarginalProbability ? Verdict::marginal : Verdict::pass;
+    int wrong = 0;
+    for (std::uint64_t seed = 1; seed <= kMatches; ++seed) {
+      base::Random random(seed, 0);
+      bool is_wrong = false;
+      int over = 0;
+      for (int games = 1; games <= 1200; ++games) {
+        over += random.uniform() < share ? 1 : 0;
+        if (games != 1 && games != 8 && games % 75 != 0) {
+          continue;
+        }
+        const MotorEvaluation motor = of_games(over, games);
+        if (!is_decided(motor)) {
+          ASSERT_EQ(stated_verdict(motor), Verdict::marginal) << over << " of " << games;
+        } else if (games == 75 || games == 150 || games == 300 || games == 600 || games == 1200) {
+          is_wrong = is_wrong || stated_verdict(motor) != right;
+        }
+      }
+      wrong += is_wrong ? 1 : 0;
+    }
+    EXPECT_LE(wrong, kError_share * kMatches + 3.0 * std::sqrt(kError_share * kMatches)) << share;
+  }
+}
+
 // A motor that certainly misses the demand in most games is infeasible, whether or not it is also too hot in most of them.
 TEST(DecidingSamples, of_temperatures_do_not_matter_if_the_demand_is_missed) {
   MotorEvaluation motor = of_games(38, 75, 74);
   motor.verdict = Verdict::infeasible;
-  EXPECT_FALSE(samples_needed(motor, *motor.short_interval, true));
+  EXPECT_FALSE(samples_needed(motor, true));
   EXPECT_TRUE(of_games(38, 75, 1).samples_needed);
 }
 

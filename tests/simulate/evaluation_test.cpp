@@ -79,15 +79,26 @@ TEST(Evaluation, a_motor_of_the_database_is_suggested_only_if_no_chosen_one_pass
   EXPECT_EQ(suggested_motor({ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")}), "maxon_ecx_flat_42m_24v");
 }
 
-TEST(Evaluation, is_undecided_while_more_samples_could_change_a_verdict) {
+// A gate must not open by chance: the verdict that counts is the worst that the samples of any motor allow.
+TEST(Evaluation, counts_the_worst_verdict_that_more_samples_could_give) {
   EvaluationAnswer answer = run_evaluation(nominal_job("paper_intermittent", {shipped_motor("maxon_ecx_flat_42m_24v")}));
-  EXPECT_TRUE(answer.is_undecided()) << "no samples were drawn";
-  answer.results.front().samples = 500;
-  EXPECT_FALSE(answer.is_undecided());
-  answer.results.front().samples_needed = 1000;
-  EXPECT_TRUE(answer.is_undecided());
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::marginal) << "no samples were drawn";
+  select::MotorEvaluation& motor = answer.results.front();
+  motor.samples = 600;
+  motor.games = 75;
+  motor.probability_interval = select::Interval95{0.0, 0.04};
+  motor.short_interval = select::Interval95{0.0, 0.04};
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::pass);
+  motor.verdict = select::Verdict::marginal;
+  motor.probability_interval = select::Interval95{0.3, 0.5};
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::marginal);
+  motor.probability_interval = select::Interval95{0.3, 0.51};
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::fail);
+  motor.short_interval = select::Interval95{0.3, 0.51};
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::infeasible);
   answer.ranks.resize(1);
-  EXPECT_FALSE(answer.is_undecided()) << "games in closed loop decide";
+  answer.ranks.front().verdict = select::Verdict::pass;
+  EXPECT_EQ(answer.worst_verdict(), select::Verdict::pass) << "games in closed loop decide";
 }
 
 }  // namespace

@@ -20,8 +20,8 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-/// Values of --fail-on: undecided, then those of Verdict without pass. Exit code 1 from the given one on.
-const std::vector<std::string> kFailOn{"undecided", "marginal", "fail", "infeasible"};
+/// Values of --fail-on: those of Verdict without pass. Exit code 1 from the given one on.
+const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
 
 struct EvaluateOptions {
   std::string robot;
@@ -94,9 +94,7 @@ base::ExitCode run(const EvaluateOptions& options, Session& session) {
   }
   session.show(document);
   const auto place = std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin();
-  const bool fails = place == 0 ? answer.worst_verdict() != select::Verdict::pass || answer.is_undecided()
-                                : answer.worst_verdict() >= static_cast<select::Verdict>(place);
-  return fails ? base::ExitCode::limit_exceeded : base::ExitCode::done;
+  return answer.worst_verdict() >= static_cast<select::Verdict>(place + 1) ? base::ExitCode::limit_exceeded : base::ExitCode::done;
 }
 
 }  // namespace
@@ -114,7 +112,9 @@ Command evaluate_command() {
         const auto options = std::make_shared<EvaluateOptions>();
         app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
         app.add_option("--duty", options->duty, "id (see `heatsoak list duties`) or file")->required()->type_name("D");
-        app.add_option("--motor,--motors", options->motors, "ids or files separated by commas, or all")->type_name("M,M")->default_str("all");
+        app.add_option("--motor,--motors", options->motors, "ids or files separated by commas, or all")
+            ->type_name("M,M")
+            ->default_str("all");
         app.add_option("--model", options->model,
                        "calibrated motor (`heatsoak calibrate --out FILE`), in place of the motor that it was fitted from")
             ->type_name("FILE.toml");
@@ -139,7 +139,8 @@ Command evaluate_command() {
         app.add_flag("--suggest", options->job.suggests,
                      "list the changes of the robot that cool its motor most, even if the motor passes: acceleration, jerk, speed, mass, "
                      "wheels, gear");
-        app.add_option("--fail-on", options->fail_on, "exit 1 if a motor's verdict is this or worse: undecided, marginal, fail, infeasible")
+        app.add_option("--fail-on", options->fail_on,
+                       "exit 1 if a motor's verdict is this or worse; while it is undecided, the worst that it may become counts")
             ->check(CLI::IsMember(kFailOn))
             ->type_name("VERDICT")
             ->capture_default_str();
