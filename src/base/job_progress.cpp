@@ -18,37 +18,16 @@ struct Outcome {
   double probability = 0.0;
 };
 
-double probability_of(std::vector<Outcome>::const_iterator from, std::vector<Outcome>::const_iterator to) {
-  return std::accumulate(from, to, 0.0, [](double sum, const Outcome& each) { return sum + each.probability; });
-}
-
-/// Sets the remaining time to the centre of the range, from a time to its fourfold, that most probably contains the true one. It becomes a
-/// lower bound if longer times are not improbable, or if no range is probable enough.
-void set_remaining(JobEstimate& estimate, const std::vector<Outcome>& ascending) {
-  constexpr double kWidth_ratio = 4.0;
-  constexpr double kProbable = 0.7;
-  constexpr double kImprobable = 0.1;
-  constexpr double kShown_s = 1.0;  // shorter times are shown as 1 s
-  double best = -1.0;
-  for (auto low = ascending.begin(); low != ascending.end(); ++low) {
-    const double most_s = kWidth_ratio * std::max(kShown_s, low->remaining_s);
-    const auto end = std::find_if(low, ascending.end(), [most_s](const Outcome& each) { return each.remaining_s > most_s; });
-    if (const double within = probability_of(low, end); within > best) {
-      best = within;
-      const double high_s = std::prev(end)->remaining_s;
-      const bool is_long_possible = probability_of(end, ascending.end()) > kImprobable;
-      estimate.is_least = is_long_possible && probability_of(ascending.begin(), low) <= kImprobable;
-      estimate.remaining_s = estimate.is_least || high_s <= kShown_s ? low->remaining_s
-                                                                     : std::sqrt(std::max(kShown_s, low->remaining_s) * high_s);
+/// Returns the least remaining time that the true one does not exceed with the given probability.
+double quantile_s(const std::vector<Outcome>& ascending, double probability) {
+  double sum = 0.0;
+  for (const Outcome& each : ascending) {
+    sum += each.probability;
+    if (sum >= probability) {
+      return each.remaining_s;
     }
   }
-  if (best < kProbable) {
-    const auto sure = std::find_if(ascending.begin(), ascending.end(), [&](const Outcome& each) {
-      return probability_of(ascending.begin(), ascending.begin() + (&each - ascending.data()) + 1) > kImprobable;
-    });
-    estimate.remaining_s = sure->remaining_s;
-    estimate.is_least = true;
-  }
+  return ascending.back().remaining_s;
 }
 
 }  // namespace
@@ -111,9 +90,8 @@ struct JobProgress::State {
 
   /// Returns the possible remaining times at the measured speeds, in ascending order.
   [[nodiscard]] std::vector<Outcome> outcomes(double time_s) const {
-    const double later_s = std::accumulate(later.begin(), later.end(), (1.0 - share) * present->work_s, [](double sum_s, const auto& each) {
-      return sum_s + each.probability * each.work_s;
-    });
+    const double later_s = std::accumulate(later.begin(), later.end(), (1.0 - share) * present->work_s,
+                                           [](double sum_s, const auto& each) { return sum_s + each.probability * each.work_s; });
     const Speeds speeds(measured(), later_s);
     // Without reports a phase proceeds at its speed. One that takes longer than expected is assumed to take another fifth of that time.
     constexpr double kOverrun_ratio = 0.2;
@@ -205,12 +183,14 @@ JobEstimate JobProgress::estimate() const {
     return found;
   }
   found.what = state.present->what;
+  constexpr double kImprobable = 0.1;
   const std::vector<Outcome> outcomes = state.outcomes(time_s);
-  set_remaining(found, outcomes);
+  found.shortest_s = quantile_s(outcomes, kImprobable);
+  found.longest_s = quantile_s(outcomes, 1.0 - kImprobable);
   const double mean_s = std::accumulate(outcomes.begin(), outcomes.end(), 0.0,
                                         [](double sum_s, const Outcome& each) { return sum_s + each.probability * each.remaining_s; });
   found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + mean_s) : 0.0;
-  found.is_least = found.is_least || state.is_open || state.present->work_s == 0.0;
+  found.is_open = state.is_open || state.present->work_s == 0.0;
   return found;
 }
 

@@ -19,11 +19,13 @@ struct JobPhase {
 };
 
 struct JobEstimate {
-  std::string what;                        ///< name of the present phase; empty before the first one
-  double elapsed_s = 0.0;                  ///< since the job began
-  double done_share = 0.0;                 ///< elapsed time divided by the mean total time, 0 to 1
-  std::optional<double> remaining_s = {};  ///< for the whole job; empty before the first phase
-  bool is_least = false;                   ///< remaining_s is a lower bound: more phases may follow that it does not contain
+  std::string what;         ///< name of the present phase; empty before the first one
+  double elapsed_s = 0.0;   ///< since the job began
+  double done_share = 0.0;  ///< elapsed time divided by the mean total time, 0 to 1
+  /// Remaining time of the whole job: 10 % and 90 % quantiles, which differ if phases may be left out. Empty before the first phase.
+  std::optional<double> shortest_s = {};
+  std::optional<double> longest_s = {};
+  bool is_open = false;  ///< more phases of unknown length may follow, so that there is no longest time
 };
 
 /// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
@@ -32,9 +34,8 @@ struct JobEstimate {
 /// Once work has been measured, only the ratios of the expected durations count. Each kind of phase is scaled by its own measured speed; a
 /// kind that has not begun is scaled by the mean speed of the job.
 ///
-/// If phases may be left out, the remaining time has several values, each with a probability. The estimate is the value that is most
-/// probably right within a factor of two; if no value is probable enough, it is a lower bound. A phase is taken to follow only together
-/// with all phases that are more probable.
+/// If phases may be left out, the remaining time has several values, each with a probability. A phase is taken to follow only together with
+/// all phases that are more probable.
 class JobProgress {
  public:
   using Now = std::function<double()>;  ///< returns a time in s that never decreases

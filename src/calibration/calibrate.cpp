@@ -90,7 +90,7 @@ class Calibrating {
       setup_.opens_loss_at_speed = true;
       all_.findings.push_back(LossAtSpeedUnknown{most_loss_W});
     }
-    options_.progress.expect(calibration_work(all_.runs), true);
+    options_.progress.expect(calibration_work(all_.runs));
     options_.progress.begin(calibration_phases::kFitting);
     all_.fit = estimation::fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();

@@ -52,13 +52,27 @@ namespace {
 /// Overwrites the line of stderr. A text that filled the line would leave copies of itself.
 void overwrite_line(std::string_view text) { fmt::print(stderr, "\r\x1b[K{}", present::leading(text, terminal_width(STDERR_FILENO) - 1)); }
 
+std::string time_words(double time_s) {
+  constexpr double kLong_s = 120.0;
+  return time_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(time_s / 60.0)) : fmt::format("{:.0f} s", std::ceil(time_s));
+}
+
+/// Formats "12 s", "12 s to 5 min", or "at least 12 s". The single value is within a factor of two of both ends of the range.
+std::string remaining_words(const base::JobEstimate& estimate) {
+  constexpr double kWide_ratio = 4.0;
+  const double shortest_s = std::max(1.0, estimate.shortest_s.value_or(0.0));
+  const double longest_s = std::max(shortest_s, estimate.longest_s.value_or(0.0));
+  if (estimate.is_open) {
+    return fmt::format("at least {}", time_words(shortest_s));
+  }
+  return longest_s > kWide_ratio * shortest_s ? fmt::format("{} to {}", time_words(shortest_s), time_words(longest_s))
+                                              : time_words(std::sqrt(shortest_s * longest_s));
+}
+
 /// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below.
 std::string words_of(const base::JobEstimate& estimate, double& most_share) {
   most_share = std::max(most_share, std::min(estimate.done_share, 0.99));
-  constexpr double kLong_s = 120.0;
-  const double left_s = std::max(1.0, std::ceil(estimate.remaining_s.value_or(0.0)));
-  const std::string left = left_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(left_s / 60.0)) : fmt::format("{:.0f} s", left_s);
-  return fmt::format("{}: {:.0f} %, {}{} left", estimate.what, 100.0 * most_share, estimate.is_least ? "at least " : "", left);
+  return fmt::format("{}: {:.0f} %, {} left", estimate.what, 100.0 * most_share, remaining_words(estimate));
 }
 
 }  // namespace
@@ -79,7 +93,7 @@ class JobLine::Painter {
     // True if the wait ended because of the stop.
     while (!changed_.wait_for(lock, stop, kBetween, [&] { return stop.stop_requested(); })) {
       const base::JobEstimate estimate = progress.estimate();
-      if (estimate.elapsed_s >= kFirst_s && estimate.remaining_s) {
+      if (estimate.elapsed_s >= kFirst_s && estimate.shortest_s) {
         overwrite_line(words_of(estimate, most_share));
         is_visible = true;
       }

@@ -56,12 +56,20 @@ void add_contradiction(const attribution::Selection& selection, const std::vecto
   }
 }
 
-/// Returns the phases of select_effects(); rounds may repeat, and usually the second round repeats the set of the first. `unit_s`: usual
-/// duration of one fit to the runs.
+/// Returns the phases of select_effects(). Usually the second round repeats the set of the first, and the search ends. The durations are
+/// averages of runs of 0.5 to 6 hours. `unit_s`: usual duration of one fit to the runs.
 std::vector<base::JobPhase> selection_work(double unit_s) {
   using namespace attribution::selection_phases;
-  return {{kFirstFit, 0.05 * unit_s},  {kSearching, 0.9 * unit_s}, {kFollowing, 0.1 * unit_s}, {kSearching, 0.9 * unit_s},
-          {kFollowing, 0.15 * unit_s}, {kCurves, 0.4 * unit_s},    {kLastFit, 0.15 * unit_s}};
+  constexpr double kThirdRound = 0.15;
+  constexpr double kSomethingMissing = 0.8;
+  return {{kFirstFit, 0.1 * unit_s},
+          {kSearching, 0.4 * unit_s},
+          {kFollowing, 0.1 * unit_s},
+          {kSearching, 0.4 * unit_s},
+          {kFollowing, 0.1 * unit_s, kThirdRound},
+          {kSearching, 0.4 * unit_s, kThirdRound},
+          {kCurves, 0.3 * unit_s, kSomethingMissing},
+          {kLastFit, 0.3 * unit_s}};
 }
 
 void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording::Recording>& held_out,
@@ -116,11 +124,11 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   input.train = runs_of(fitted, how, findings);
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
-  const std::vector<base::JobPhase> last{{kContradiction, 0.6 * unit_s}, {kBand, 0.6 * unit_s}, {kScoring, 0.6 * unit_s}};
+  const std::vector<base::JobPhase> last{{kContradiction, 0.4 * unit_s}, {kBand, 0.2 * unit_s}, {kScoring, 0.01 * unit_s}};
   std::vector<base::JobPhase> phases = selection_work(unit_s);
-  phases.insert(phases.begin(), {kReading, 0.2 * unit_s});
+  phases.insert(phases.begin(), {kReading, 0.4 * unit_s});
   phases.insert(phases.end(), last.begin(), last.end());
-  progress.expect(std::move(phases), true);
+  progress.expect(std::move(phases));
   progress.begin(kReading);
   settle_turning_rows(input);
   if (input.turns_within_rows) {

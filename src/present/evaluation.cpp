@@ -173,12 +173,14 @@ std::vector<Text> headline(const simulate::EvaluationAnswer& answer) {
     return Text{fmt::format("{}{} {}.", prefix, motor.motor_id, what_happens(motor)), tone_of(shown_verdict(motor))};
   };
   const bool is_sampled = results.front().samples > 0;
-  const bool any_passes = std::ranges::any_of(results, [](const auto& each) { return each.verdict == select::Verdict::pass; });
+  const auto any = [&](ShownVerdict verdict) {
+    return std::ranges::any_of(results, [verdict](const auto& each) { return shown_verdict(each) == verdict; });
+  };
+  const Tone tone = any(ShownVerdict::pass)                                             ? Tone::good
+                    : any(ShownVerdict::undecided) || any(ShownVerdict::nominal_within) ? Tone::undecided
+                                                                                        : Tone::bad;
   const std::string_view prefix = is_sampled ? "" : "No samples were drawn, so this is no verdict over tolerances: with nominal values ";
-  std::vector<Text> sentences{{fmt::format("{}{}.", prefix, counted_verdicts(answer, load_words(answer.duty))), !any_passes ? Tone::bad
-                                                                                                                : is_sampled
-                                                                                                                    ? Tone::good
-                                                                                                                    : Tone::undecided}};
+  std::vector<Text> sentences{{fmt::format("{}{}.", prefix, counted_verdicts(answer, load_words(answer.duty))), tone}};
   if (const std::string slip = slip_text(answer.demand); !slip.empty()) {
     sentences.push_back({fmt::format("This holds only for a robot that follows the plan exactly, but {}. --closed-loop, or `heatsoak "
                                      "simulate`, shows whether this robot can drive it.",

@@ -82,14 +82,19 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
   return panels;
 }
 
-/// Formats as "pass, winding 62 °C (limit 155 °C)", for the hottest run; the verdict is that of the deciding one.
+/// Returns how one game ended; it is no verdict over tolerances.
+std::string_view outcome_of(select::Verdict verdict) {
+  return verdict == select::Verdict::pass ? "within limits" : verdict == select::Verdict::fail ? "over a limit" : "not driven";
+}
+
+/// Formats as "within limits, winding 62 °C (limit 155 °C)", for the hottest run; the outcome is that of the deciding one.
 std::string verdict_and_peak(const simulate::MatchSimulation& match) {
   double peak_C = 0.0;
   for (const simulate::DrivenMatch& each : match.runs) {
     peak_C = std::max(peak_C, each.run.score.winding_peak_C);
   }
   const double limit_C = match.motor.nominal.winding_limit_C;
-  return fmt::format("{}, winding {:.0f} °C (limit {:.0f} °C)", select::to_string(match.verdict()), peak_C, limit_C);
+  return fmt::format("{}, winding {:.0f} °C (limit {:.0f} °C)", outcome_of(match.verdict()), peak_C, limit_C);
 }
 
 }  // namespace

@@ -15,10 +15,17 @@ namespace {
 
 std::string_view unit_of(const select::MotorEvaluation& motor) { return motor.games > 0 ? "games" : "samples"; }
 
+/// Fewer samples than the program draws by itself say little about the number that decides.
+bool are_few(const select::MotorEvaluation& motor) { return motor.samples < select::first_samples(motor.games > 0); }
+
 /// Returns how many more games or samples decide the verdict, with which probability.
 std::string deciding_words(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
   const std::string_view unit = unit_of(motor);
+  if (are_few(motor)) {
+    const int samples = *motor.samples_needed - motor.samples;
+    return fmt::format("At least {} more {} are needed", is_drawn ? samples / base::kLanes : samples, unit);
+  }
   const int most = select::most_samples_at_all(is_drawn);
   const auto [half, nine_in_ten] = select::deciding_samples(motor);
   const auto number = [&](int samples) { return is_drawn ? samples / base::kLanes : samples; };
@@ -41,9 +48,15 @@ std::string note_on_one(const select::MotorEvaluation& motor) {
 /// The motors that need the fewest samples come first.
 std::string note_on_several(const std::vector<const select::MotorEvaluation*>& motors) {
   const int most = select::most_samples_at_all(motors.front()->games > 0);
-  const auto shown = [most](const std::optional<int>& samples) { return samples ? fmt::format("{}", *samples) : fmt::format("over {}", most); };
+  const auto shown = [most](const std::optional<int>& samples) {
+    return samples ? fmt::format("{}", *samples) : fmt::format("over {}", most);
+  };
   std::vector<std::pair<int, std::string>> needs;
   for (const select::MotorEvaluation* each : motors) {
+    if (are_few(*each)) {
+      needs.emplace_back(*each->samples_needed, fmt::format("{} {}", each->motor_id, *each->samples_needed));
+      continue;
+    }
     const auto [half, nine_in_ten] = select::deciding_samples(*each);
     needs.emplace_back(half.value_or(most), half ? fmt::format("{} {} to {}", each->motor_id, shown(half), shown(nine_in_ten))
                                                  : fmt::format("{} {}", each->motor_id, shown(half)));
@@ -53,8 +66,9 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
   std::ranges::transform(needs, std::back_inserter(words), &std::pair<int, std::string>::second);
   return fmt::format(
       "{} motors are undecided: after so few {}, the share of motors over a limit, or short of the demand, may lie on either side of a "
-      "threshold; the JSON output has their verdicts so far. Values of --samples that decide with a probability of 50 % to 90 %: {}.",
-      motors.size(), unit_of(*motors.front()), fmt::join(words, "; "));
+      "threshold. Values of --samples that {}: {}.",
+      motors.size(), unit_of(*motors.front()),
+      are_few(*motors.front()) ? "are needed at least" : "decide with a probability of 50 % to 90 %", fmt::join(words, "; "));
 }
 
 }  // namespace
@@ -70,8 +84,8 @@ void add_undecided_note(Document& document, std::span<const select::MotorEvaluat
     return;
   }
   std::string words = undecided.size() == 1 ? note_on_one(*undecided.front()) : note_on_several(undecided);
-  if (const int usual = select::first_samples(undecided.front()->games > 0); undecided.front()->samples < usual) {
-    words += fmt::format(" Without --samples, {} are drawn, and more if needed.", usual);
+  if (are_few(*undecided.front())) {
+    words += fmt::format(" Without --samples, {} are drawn, and more if needed.", select::first_samples(undecided.front()->games > 0));
   }
   document.add_note(Severity::warning, words);
 }

@@ -121,7 +121,7 @@ class HotMotor {
       }
     }
     if (!steady) {
-      return std::numeric_limits<double>::max();
+      return std::numeric_limits<double>::infinity();
     }
     const double winding_K = steady->temperature_C[winding] - sample_.values.winding_limit_C;
     return sample_.values.stator_limit_C ? std::max(winding_K, steady->temperature_C[stator] - *sample_.values.stator_limit_C) : winding_K;

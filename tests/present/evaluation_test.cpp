@@ -319,6 +319,35 @@ TEST(EvaluationJson, a_verdict_without_samples_is_not_decided) {
   }
 }
 
+// Few samples predict little, so the note says what is needed at least, and what the program does by itself.
+TEST(EvaluationDocument, after_few_games_the_note_states_the_least_number) {
+  const base::ShareInterval interval = base::share_interval(0.0, 20, select::error_share(20, true));
+  select::MotorEvaluation motor = sampled(0.0, {interval.low, interval.high}, 160);
+  motor.motor_id = "a";
+  motor.games = 20;
+  motor.short_interval = select::Interval95{0.0, interval.high};
+  select::decide_by_samples(motor, true);
+  const std::vector<Note> notes = evaluation_document(answer_with({motor}, "division_a_match")).notes;
+  const auto found = std::ranges::find_if(notes, [](const Note& each) { return each.words.find("a counts as") != std::string::npos; });
+  ASSERT_NE(found, notes.end());
+  // (1 - 0.05)^n is at most 0.025 from n = 72 on.
+  EXPECT_THAT(found->words, AllOf(HasSubstr("a counts as marginal"), HasSubstr("At least 52 more games are needed"),
+                                  HasSubstr("Without --samples, 600 are drawn"), Not(HasSubstr("probability of 50 %"))));
+}
+
+// A team must not see green before a motor certainly passes, nor red before all certainly do not.
+TEST(EvaluationDocument, the_colour_of_the_headline_is_that_of_the_best_shown_verdict) {
+  select::MotorEvaluation fails = sampled(0.9, {0.8, 0.95}, 600);
+  fails.verdict = select::Verdict::fail;
+  const select::MotorEvaluation passes = sampled(0.0, {0.0, 0.01}, 600);
+  const auto tone = [](std::vector<select::MotorEvaluation> motors) {
+    return evaluation_document(answer_with(std::move(motors), "division_a_match")).headline.front().tone;
+  };
+  EXPECT_EQ(tone({fails}), Tone::bad);
+  EXPECT_EQ(tone({undecided("a", 3), fails}), Tone::undecided);
+  EXPECT_EQ(tone({passes, undecided("a", 3), fails}), Tone::good);
+}
+
 // The reason why `simulate` gives another temperature must be among the three notes that are shown.
 TEST(EvaluationDocument, states_first_that_simulate_gives_other_temperatures) {
   const Document document = evaluation_document(answer_with({undecided("a", 3), undecided("b", 1)}, "division_a_match"));

@@ -226,6 +226,21 @@ TEST_F(ChartTest, NamesFromFilesCannotBreakTheXml) {
   EXPECT_EQ(texts(drawn(chart), "a b \uFFFD \uFFFD\uFFFD \uFFFD\uFFFD \"<&>'"), 1U);
 }
 
+// Two names in a column beside two panels would leave a third of the picture empty, also if they are wrapped.
+TEST_F(ChartTest, PanelsUseTheWidthWhereTheirNamesAreFewAndLong) {
+  for (const char* name :
+       {"nanotec_df45l024048_a2, 38 °C, undecided", "a name that is much longer than nanotec_df45l024048_a2, 38 °C, undecided"}) {
+    Chart chart{.title = "two panels", .x_label = "x", .panels = {{}, {}}};
+    for (ChartPanel& panel : chart.panels) {
+      panel.curves = {{.name = name, .x = {0.0, 1.0}, .y = {0.0, 1.0}},
+                      {.name = std::string(name) + "b", .x = {0.0, 1.0}, .y = {0.0, 2.0}}};
+    }
+    for (const SeenPanel& panel : seen_panels(drawn(chart))) {
+      EXPECT_GT(panel.x.px(1.0), 0.9 * chart.width_px) << name;
+    }
+  }
+}
+
 TEST_F(ChartTest, DrawsWhereThereIsLittleToShow) {
   EXPECT_NO_THROW(drawn(Chart{}));
   Chart chart{.title = "", .subtitle = "", .x_label = "", .panels = {{}, {}}};

@@ -94,10 +94,13 @@ class Search {
 
   /// Declares a round of extensions, after which another may follow.
   void expect_extensions() const {
+    constexpr double kNextRound = 0.4;
     std::vector<base::JobPhase> phases = rest();
     const bool is_first = out_.accepted.empty();
-    phases.insert(phases.begin(), {calibration_phases::kExtending, (is_first ? 4.0 : 10.0) * usual_s(runs_)});
-    progress_.expect(std::move(phases), true);
+    const double unit_s = usual_s(runs_);
+    phases.insert(phases.begin(), {{calibration_phases::kExtending, (is_first ? 4.0 : 10.0) * unit_s},
+                                   {calibration_phases::kExtending, 10.0 * unit_s, kNextRound}});
+    progress_.expect(std::move(phases));
   }
 
   [[nodiscard]] ForecastRules rules() const { return {.threads = threads_}; }

@@ -235,7 +235,7 @@ class PageBuilder {
     // A wide legend beside several panels, or a single entry beside any, would leave most of its column empty.
     constexpr double kBroad_share = 0.27;
     const bool wastes_column =
-        entries_.size() == 1 || (chart_.panels.size() > 1 && legend_px + kSwatchWidth_px > kBroad_share * page_.width_px);
+        entries_.size() == 1 || (chart_.panels.size() > 1 && column_width_px() > kBroad_share * page_.width_px);
     is_legend_on_top_ = wastes_column && column_width_px() <= right_px_ - left_px_;
     if (!entries_.empty() && !is_legend_on_top_) {
       legend_x_px_ = std::floor(right_px_ - legend_px - kSwatchWidth_px - 8.0);
