@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -49,6 +50,12 @@ struct Candidate {
   double gain_nats = -std::numeric_limits<double>::infinity();
 };
 
+std::vector<base::JobPhase> work_after_extensions(double unit_s) {
+  return {{calibration_phases::kComparing, 1.0 * unit_s},
+          {calibration_phases::kLeavingOut, 1.8 * unit_s},
+          {calibration_phases::kPredicting, 0.4 * unit_s}};
+}
+
 class Search {
  public:
   Search(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, int threads, const base::JobProgress& progress)
@@ -74,7 +81,7 @@ class Search {
     const bool are_runs = runs_.size() > 1;
     for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
     }
-    progress_.expect(rest());
+    progress_.expect(work_after_extensions(usual_s(runs_)));
     progress_.begin(calibration_phases::kComparing);
     if (out_.pieces.size() >= kLeastToCompare) {
       compare_with_rivals(are_runs);
@@ -84,22 +91,16 @@ class Search {
   }
 
  private:
-  /// Returns what follows the extensions.
-  [[nodiscard]] std::vector<base::JobPhase> rest() const {
-    const double unit_s = usual_s(runs_);
-    return {{calibration_phases::kComparing, 0.5 * unit_s},
-            {calibration_phases::kLeavingOut, 1.5 * unit_s},
-            {calibration_phases::kPredicting, 0.1 * unit_s}};
-  }
-
-  /// Declares a round of extensions, after which another may follow.
+  /// Declares a round of extensions, after which another may follow. A later round has more candidates.
   void expect_extensions() const {
     constexpr double kNextRound = 0.4;
-    std::vector<base::JobPhase> phases = rest();
-    const bool is_first = out_.accepted.empty();
     const double unit_s = usual_s(runs_);
-    phases.insert(phases.begin(), {{calibration_phases::kExtending, (is_first ? 4.0 : 10.0) * unit_s},
-                                   {calibration_phases::kExtending, 10.0 * unit_s, kNextRound}});
+    const std::size_t accepted = out_.accepted.size();
+    std::vector<base::JobPhase> phases{{calibration_phases::kExtending, (accepted == 0 ? 4.0 : 8.0) * unit_s}};
+    if (accepted + 1 < static_cast<std::size_t>(kMostExtensions)) {
+      phases.push_back({calibration_phases::kExtending, 8.0 * unit_s, kNextRound});
+    }
+    std::ranges::move(work_after_extensions(unit_s), std::back_inserter(phases));
     progress_.expect(std::move(phases));
   }
 
@@ -320,9 +321,7 @@ std::vector<base::JobPhase> calibration_work(std::span<const estimation::Measure
   if (runs.size() > 1) {
     phases.push_back({calibration_phases::kExtending, 7.0 * unit_s});
   }
-  phases.push_back({calibration_phases::kComparing, 0.5 * unit_s});
-  phases.push_back({calibration_phases::kLeavingOut, 1.5 * unit_s});
-  phases.push_back({calibration_phases::kPredicting, 0.1 * unit_s});
+  std::ranges::move(work_after_extensions(unit_s), std::back_inserter(phases));
   return phases;
 }
 
