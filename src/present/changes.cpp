@@ -83,10 +83,12 @@ std::vector<const select::ChangeEffect*> listed(std::span<const select::ChangeEf
 }  // namespace
 
 void add_changes(Document& document, const simulate::SuggestedChanges& changes, bool is_drawn) {
-  const auto& [motor_id, effects] = changes;
+  const auto& [motor_id, passes, effects] = changes;
   constexpr std::size_t kLeastForValues = 70;
   const std::vector<const select::ChangeEffect*> shown = listed(effects);
-  document.headline.push_back({best_change_words(shown.empty() ? nullptr : shown.front(), effects, motor_id, is_drawn)});
+  if (!passes) {
+    document.headline.push_back({best_change_words(shown.empty() ? nullptr : shown.front(), effects, motor_id, is_drawn)});
+  }
   const auto other = std::ranges::find_if(effects, [](const select::ChangeEffect& each) { return !each.other_motor.empty(); });
   if (other != effects.end() && counts(*other)) {
     document.headline.push_back({other_motor_words(*other)});

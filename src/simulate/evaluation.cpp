@@ -51,18 +51,20 @@ const auto& subject_of(const Range& motors, const robot::Robot& robot, Id id) {
 }
 
 std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const EvaluationAnswer& answer, const base::JobProgress& progress) {
-  const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot, &select::MotorEvaluation::motor_id);
-  if (!job.suggests && subject.verdict == select::Verdict::pass) {
+  if (!job.with_changes) {
     return std::nullopt;
   }
+  const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot, &select::MotorEvaluation::motor_id);
+  const bool passes = subject.verdict == select::Verdict::pass;
   const motor::Motor& motor = *std::ranges::find(job.motors, subject.motor_id, &motor::Motor::id);
   const bool none_passes =
       std::ranges::none_of(answer.results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass; });
   const bool offers_motor = job.database && (!job.has_chosen_motors || none_passes);
   // Otherwise only the compared motors may replace it.
-  const std::vector<motor::Motor> others = offers_motor ? job.database() : job.motors;
-  return SuggestedChanges{subject.motor_id, select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads,
-                                                                       progress.begin(kChanging))};
+  const std::vector<motor::Motor> others = passes ? std::vector<motor::Motor>() : offers_motor ? job.database() : job.motors;
+  return SuggestedChanges{
+      subject.motor_id, passes,
+      select::effects_of_changes(answer.robot, job.duty, motor, others, job.seed, job.threads, progress.begin(kChanging))};
 }
 
 /// Returns the rests of every motor that can drive the duty, on the wheel that its result is for.
@@ -122,12 +124,11 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
   std::vector<duty::WheelDemand> draws;
   const auto later = [&](std::span<const select::Prospect> prospects) {
     std::vector<base::JobPhase> phases = job.closed_loop ? drive_phases(job.motors.size(), drive) : std::vector<base::JobPhase>();
-    constexpr std::size_t kUsualOthers = 30;
-    const double probability = job.suggests ? 1.0
-                               : prospects.empty()
-                                   ? 0.0
-                                   : 1.0 - subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability();
-    phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, kUsualOthers), probability});
+    if (job.with_changes) {
+      const bool may_fail = !prospects.empty() && subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability() < 0.5;
+      constexpr std::size_t kUsualOthers = 30;
+      phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, may_fail ? kUsualOthers : 0)});
+    }
     return phases;
   };
   answer.results = select::evaluate_until_decided(answer.robot, job.duty, wheels, job.motors, options, most, draws, {progress, later});

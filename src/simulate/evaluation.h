@@ -31,16 +31,17 @@ struct EvaluationJob {
   std::optional<int> samples = {};                     ///< empty: first_samples(), then up to most_samples() until the verdicts are decided
   int threads = 0;                                     ///< 0: all cores; the result does not depend on it
   bool with_bands = false;                             ///< keep the range of the samples over time
-  bool suggests = false;                               ///< search for changes of the robot also if its motor passes
+  bool with_changes = true;                            ///< search for changes of the robot that cool its motor
   bool has_chosen_motors = false;                      ///< the user chose `motors`: another one is suggested only if none of them passes
   /// Returns the motors that may replace the robot's; called only if one of them may be suggested. May be empty.
   std::function<std::vector<motor::Motor>()> database = {};
   std::optional<ClosedLoopJob> closed_loop = {};
 };
 
-/// Changes of the robot that cool one of the motors.
+/// Changes of the robot that cool one of the motors. Another motor is among them only if that one does not pass.
 struct SuggestedChanges {
   std::string motor_id;
+  bool passes = false;  ///< that motor passes without a change
   std::vector<select::ChangeEffect> effects;
 };
 
@@ -58,8 +59,7 @@ struct EvaluationAnswer {
   std::map<std::string, std::vector<select::RestOfHotMotor>> rests;
   std::optional<ClosedLoopJob> closed_loop;
   std::vector<ClosedLoopRank> ranks;  ///< one for each result; empty without a closed loop
-  /// Changes for the robot's own motor if it is among the results, else for the best motor. Empty if that motor passes and no changes were
-  /// requested.
+  /// Changes for the robot's own motor if it is among the results, else for the best motor. Empty if the job is without changes.
   std::optional<SuggestedChanges> changes;
 
   /// Returns the worst verdict that the samples of any motor still allow; in closed loop the worst of the games.

@@ -205,11 +205,14 @@ TEST_F(FrontDoor, a_report_can_go_to_stdout) {
   EXPECT_THAT(done.out, Not(HasSubstr("--explain")));
 }
 
-TEST_F(FrontDoor, a_suggestion_is_part_of_the_verdict) {
-  const ProgramRun done = run_here(
-      "heatsoak evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors maxon_ecx_flat_42m_24v --samples 8 --suggest "
-      "--quiet");
-  EXPECT_THAT(done.out, testing::AnyOf(HasSubstr("Largest improvement for"), HasSubstr("No change of the robot")));
+TEST_F(FrontDoor, changes_that_help_follow_every_verdict) {
+  const std::string line = "heatsoak evaluate --robot roboteam_twente_v2024 --duty paper_intermittent --motors ";
+  const ProgramRun passes = run_here(line + "maxon_ecx_flat_42m_24v");
+  EXPECT_THAT(passes.out,
+              AllOf(HasSubstr("Changes of the robot that help maxon_ecx_flat_42m_24v most"), Not(HasSubstr("Largest improvement"))));
+  const ProgramRun fails = run_here(line + "maxon_ecx_flat_32l_48v");
+  EXPECT_THAT(fails.out, AllOf(HasSubstr("Changes of the robot that help maxon_ecx_flat_32l_48v most"), HasSubstr("Largest improvement")));
+  EXPECT_THAT(run_here(line + "maxon_ecx_flat_42m_24v --no-changes").out, Not(HasSubstr("Changes of the robot")));
 }
 
 TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {

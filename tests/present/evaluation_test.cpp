@@ -388,6 +388,7 @@ TEST(EvaluationDocument, lists_three_changes_of_the_robot_and_another_motor) {
   simulate::EvaluationAnswer answer = answer_with({sampled(0.0, {0.0, 0.01}, 500)});
   answer.changes =
       simulate::SuggestedChanges{"m",
+                                 false,
                                  {{.quantity = select::ChangedQuantity::jerk, .before = 20.0, .factor = 0.5, .saved_K = 15.0},
                                   {.quantity = select::ChangedQuantity::gear_ratio, .before = 1.0, .factor = 1.25, .saved_K = 20.0},
                                   {.quantity = select::ChangedQuantity::mass, .before = 2.5, .factor = 0.9, .saved_K = 5.0},

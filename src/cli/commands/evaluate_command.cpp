@@ -136,9 +136,8 @@ Command evaluate_command() {
         app.add_option("--games", options->closed_loop.games, "number of games with --closed-loop, with successive seeds")
             ->check(CLI::Range(1, 1000))
             ->capture_default_str();
-        app.add_flag("--suggest", options->job.suggests,
-                     "list the changes of the robot that cool its motor most, even if the motor passes: acceleration, jerk, speed, mass, "
-                     "wheels, gear");
+        app.add_flag("!--no-changes", options->job.with_changes,
+                     "do not search for the changes of the robot that cool its motor most: acceleration, jerk, speed, mass, wheels, gear");
         app.add_option("--fail-on", options->fail_on,
                        "exit 1 if a motor's verdict is this or worse; while it is undecided, the worst that it may become counts")
             ->check(CLI::IsMember(kFailOn))
