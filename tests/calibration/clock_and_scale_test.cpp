@@ -39,24 +39,30 @@ TEST(Screening, SingleWildCurrentIsLeftOutByLine) {
   EXPECT_THAT(result.quality.suspicions, IsEmpty());
 }
 
-recording::SyntheticLog unsteady(double delay_s) {
+/// Tests of an unsteady load take the seeds 1 to kLoads, which decide load and noise.
+constexpr std::uint64_t kLoads = 4;
+
+recording::SyntheticLog unsteady(double delay_s, std::uint64_t seed) {
   recording::SyntheticLog log;
+  log.seed = seed;
   log.delay_s = delay_s;
-  log.current_A = [](double time_s) {
-    base::Random random(static_cast<std::uint64_t>(std::max(time_s, 0.0) / 20.0), 5);
+  log.current_A = [seed](double time_s) {
+    base::Random random(static_cast<std::uint64_t>(std::max(time_s, 0.0) / 20.0), seed);
     return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
   };
   return log;
 }
 
 TEST(ClockOffsets, TemperatureBeforeItsHeatSpoils) {
-  for (const auto& [delay_s, is_one_row] : {std::pair(-1.0, true), std::pair(-4.0, false)}) {
-    const recording::Read result = recording::read_text(unsteady(delay_s).csv());
-    const auto is_early = ElementsAre(
-        VariantWith<RespondsEarly>(AllOf(Field(&RespondsEarly::temperature, "winding_C"), Field(&RespondsEarly::delay_s, testing::Lt(0.0)),
-                                         Field(&RespondsEarly::is_one_row, is_one_row))));
-    EXPECT_THAT(result.quality.blocking, is_early) << delay_s;
-    EXPECT_THAT(result.quality.suspicions, is_early) << delay_s;
+  for (std::uint64_t seed = 1; seed <= kLoads; ++seed) {
+    for (const auto& [delay_s, is_one_row] : {std::pair(-1.0, true), std::pair(-4.0, false)}) {
+      const recording::Read result = recording::read_text(unsteady(delay_s, seed).csv());
+      const auto is_early = ElementsAre(VariantWith<RespondsEarly>(AllOf(Field(&RespondsEarly::temperature, "winding_C"),
+                                                                         Field(&RespondsEarly::delay_s, testing::Lt(0.0)),
+                                                                         Field(&RespondsEarly::is_one_row, is_one_row))));
+      EXPECT_THAT(result.quality.blocking, is_early) << delay_s << ", seed " << seed;
+      EXPECT_THAT(result.quality.suspicions, is_early) << delay_s << ", seed " << seed;
+    }
   }
 }
 
@@ -66,18 +72,21 @@ testing::Matcher<recording::RespondsLate> is_late(double delay_s) {
 }
 
 TEST(ClockOffsets, TemperatureAfterItsHeatIsSaidByTheAdmission) {
-  for (const double delay_s : {0.0, 3.0}) {
-    const recording::Read result = recording::read_text(unsteady(delay_s).csv());
-    EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "sensors lag";
-    const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
-    if (delay_s > 0.0) {
-      EXPECT_THAT(
-          admission.notes,
-          ElementsAre(VariantWith<SensorLags>(AllOf(Field(&SensorLags::log, "log"), Field(&SensorLags::response, is_late(delay_s))))));
-      EXPECT_THAT(admission.lagging, ElementsAre("winding_C"));
-    } else {
-      EXPECT_THAT(admission.notes, IsEmpty());
-      EXPECT_THAT(admission.lagging, IsEmpty());
+  for (std::uint64_t seed = 1; seed <= kLoads; ++seed) {
+    for (const double delay_s : {0.0, 3.0}) {
+      SCOPED_TRACE(testing::Message() << delay_s << " s, seed " << seed);
+      const recording::Read result = recording::read_text(unsteady(delay_s, seed).csv());
+      EXPECT_THAT(result.quality.suspicions, IsEmpty()) << "sensors lag";
+      const Admission admission = admit(shipped_motor("maxon_ec45_flat_70w_24v"), std::vector{result.recording}, {}, false);
+      if (delay_s > 0.0) {
+        EXPECT_THAT(
+            admission.notes,
+            ElementsAre(VariantWith<SensorLags>(AllOf(Field(&SensorLags::log, "log"), Field(&SensorLags::response, is_late(delay_s))))));
+        EXPECT_THAT(admission.lagging, ElementsAre("winding_C"));
+      } else {
+        EXPECT_THAT(admission.notes, IsEmpty());
+        EXPECT_THAT(admission.lagging, IsEmpty());
+      }
     }
   }
 }
@@ -132,7 +141,8 @@ TEST(ClockOffsets, WindingThatFollowsTheIronIsNotJudged) {
   for (const recording::ClockOffset& offset : result.quality.clock_offsets) {
     EXPECT_EQ(offset.explains_flow, offset.temperature == "stator_C");
   }
-  EXPECT_TRUE(std::ranges::any_of(recording::read_text(unsteady(0.0).csv()).quality.clock_offsets, &recording::ClockOffset::explains_flow));
+  EXPECT_TRUE(
+      std::ranges::any_of(recording::read_text(unsteady(0.0, 1).csv()).quality.clock_offsets, &recording::ClockOffset::explains_flow));
 }
 
 /// Log of a cool-down from `from_s` on, after heating for `heated_s`. Motor temperatures may be in Fahrenheit; the air is in Celsius.

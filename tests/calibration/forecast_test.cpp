@@ -46,16 +46,18 @@ std::vector<estimation::MeasuredRun> runs_of(const ForecastSetup& setup, const s
 /// White noise has as many independent samples as samples. For x(k+1) = a·x(k) + noise the share is (1 − a)/(1 + a).
 TEST(IndependentSamples, AreThoseOfKnownProcesses) {
   constexpr int kSamples = 20'000;
-  base::Random random(kAnySeed, 1);
   for (const double kept : {0.0, 0.5, 0.9}) {
-    Eigen::VectorXd error_K(kSamples);
-    double now_K = 0.0;
-    for (double& each : error_K) {
-      now_K = kept * now_K + estimation::standard_normal(random);
-      each = now_K;
-    }
     const double expected = kSamples * (1.0 - kept) / (1.0 + kept);
-    EXPECT_NEAR(independent_samples(error_K) / expected, 1.0, 0.15) << kept;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      base::Random random(seed, 1);
+      Eigen::VectorXd error_K(kSamples);
+      double now_K = 0.0;
+      for (double& each : error_K) {
+        now_K = kept * now_K + estimation::standard_normal(random);
+        each = now_K;
+      }
+      EXPECT_NEAR(independent_samples(error_K) / expected, 1.0, 0.15) << kept << ", seed " << seed;
+    }
   }
   // A constant error counts as one independent sample.
   EXPECT_LT(independent_samples(Eigen::VectorXd::Ones(kSamples)), 2.1);
@@ -235,7 +237,8 @@ TEST(Prediction, OfAConstantPowerEndsWhereTheResistancesSay) {
   const Sheet sheet;
   const motor::Motor motor = sheet.motor(folder);
   constexpr double kPower_W = 4.0;
-  recording::Recording log = estimation::generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, kAnySeed, 0);
+  recording::Recording log =
+      estimation::generated_log(sheet.truth, {.duration_s = 7200.0, .period_s = 2.0, .ambient_swing_K = 0.0}, kAnySeed, 0);
   std::erase_if(log.channels, [](const recording::Channel& each) { return each.quantity.key == "current_A"; });
   log.channels.push_back({*recording::quantity_named("power_in_W"), std::vector<double>(log.rows(), kPower_W)});
   const PredictedRun run = predict(motor, std::vector{log}, PredictionOptions{}).runs.front();
@@ -355,10 +358,10 @@ TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   motor.fit->parameters = {"thermal_resistance_winding_stator"};
   motor.fit->correlation = motor::Correlation(std::size_t{1});
   motor.fit->band = motor::ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
-  base::Random random(kAnySeed, 0);
   constexpr int kDraws = 4000;
   double squares = 0.0;
-  for (int i = 0; i < kDraws; ++i) {
+  for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
+    base::Random random(seed, 0);
     squares += std::pow(std::log(motor::draw_sample(motor, random).values.terminal_resistance_ohm / sheet.truth.resistance_25C_ohm), 2);
   }
   EXPECT_NEAR(std::sqrt(squares / kDraws), 2.0 * 0.05, 0.005);

@@ -361,13 +361,13 @@ TEST(CalibratedMotor, IsReadBackAsItWasWritten) {
     EXPECT_NEAR(read.parameters.at(key).value, each.value, 1e-5 * std::abs(each.value)) << key;
   }
   // Samples drawn from the file must have the correlations of the fit.
-  base::Random random(3, 0);
   double product = 0.0;
   double squares_a = 0.0;
   double squares_b = 0.0;
   const double mean_a = std::log(written.nominal.thermal_resistance_stator_ambient_K_per_W);
   const double mean_b = std::log(written.nominal.thermal_resistance_winding_stator_K_per_W);
-  for (int i = 0; i < 4000; ++i) {
+  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+    base::Random random(seed, 0);
     const motor::MotorValues values = motor::draw_sample(read, random).values;
     const double a = std::log(values.thermal_resistance_stator_ambient_K_per_W) - mean_a;
     const double b = std::log(values.thermal_resistance_winding_stator_K_per_W) - mean_b;

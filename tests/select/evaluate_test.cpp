@@ -208,15 +208,17 @@ TEST(Evaluate, nearer_limit_decides_margins) {
 
 TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
   const motor::Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
-  const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
-                                              {.samples = 100, .seed = 1, .with_curves = true, .with_bands = true});
-  EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
-  EXPECT_TRUE(std::ranges::is_sorted(result.curves.time_s));
-  for (std::size_t i = 0; i < result.curves.band_time_s.size(); ++i) {
-    EXPECT_LT(result.curves.winding_p05_C[i], result.curves.winding_p95_C[i]);
-    EXPECT_LT(result.curves.stator_p05_C[i], result.curves.stator_p95_C[i]);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
+                                                {.samples = 100, .seed = seed, .with_curves = true, .with_bands = true});
+    EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
+    EXPECT_TRUE(std::ranges::is_sorted(result.curves.time_s));
+    for (std::size_t i = 0; i < result.curves.band_time_s.size(); ++i) {
+      EXPECT_LT(result.curves.winding_p05_C[i], result.curves.winding_p95_C[i]);
+      EXPECT_LT(result.curves.stator_p05_C[i], result.curves.stator_p95_C[i]);
+    }
+    EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), *result.winding_peak_C.p95, 8.0) << seed;
   }
-  EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), *result.winding_peak_C.p95, 8.0);
 }
 
 TEST(PaperCase, ecx_flat_32l_peaks_at_162_C_and_fails_by_its_winding) {

@@ -73,11 +73,6 @@ inline double rest_C(double resistance_ohm, double current_A) {
       .winding_C;
 }
 
-inline double quantile_of(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
-}
-
 inline base::ParameterValue resistance_within_10_percent() {
   base::ParameterValue figure;
   figure.value = kResistance_ohm;

@@ -42,15 +42,17 @@ SensingConfig silent() {
 }
 
 TEST(Noise, is_normal_to_the_fourth_moment) {
-  base::Random random(7, 0);
-  constexpr int kDraws = 400'000;
+  constexpr int kSeeds = 400, kDrawsOfSeed = 1000, kDraws = kSeeds * kDrawsOfSeed;
   double sum = 0.0, square = 0.0, fourth = 0.0, largest = 0.0;
-  for (int i = 0; i < kDraws; ++i) {
-    const double x = noise(random);
-    sum += x;
-    square += x * x;
-    fourth += x * x * x * x;
-    largest = std::max(largest, std::abs(x));
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    base::Random random(seed, 0);
+    for (int i = 0; i < kDrawsOfSeed; ++i) {
+      const double x = noise(random);
+      sum += x;
+      square += x * x;
+      fourth += x * x * x * x;
+      largest = std::max(largest, std::abs(x));
+    }
   }
   EXPECT_NEAR(sum / kDraws, 0.0, 4.0 / std::sqrt(kDraws));
   EXPECT_NEAR(square / kDraws, 1.0, 4.0 * std::sqrt(2.0 / kDraws));
@@ -129,11 +131,19 @@ std::vector<double> gyro_at_rest(const SensingConfig& config, std::uint64_t seed
 TEST(Sensing, gyro_noise_bias_and_drift) {
   SensingConfig config = silent();
   config.gyro_noise_rad_per_s = 0.003;
-  const Statistics noisy = statistics_of(gyro_at_rest(config, 5, 20'000));
+  const auto over_seeds = [&config] {
+    std::vector<double> all_rad_per_s;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      const std::vector<double> seen_rad_per_s = gyro_at_rest(config, seed, 1000);
+      all_rad_per_s.insert(all_rad_per_s.end(), seen_rad_per_s.begin(), seen_rad_per_s.end());
+    }
+    return statistics_of(all_rad_per_s);
+  };
+  const Statistics noisy = over_seeds();
   EXPECT_NEAR(noisy.sd, 0.003, 0.03 * 0.003);
   EXPECT_NEAR(noisy.mean, 0.0, 4.0 * 0.003 / std::sqrt(20'000.0));
   config.gyro_step_rad_per_s = 0.002;  // white noise and the uniform rounding errors add up
-  EXPECT_NEAR(statistics_of(gyro_at_rest(config, 5, 20'000)).sd, std::sqrt(0.003 * 0.003 + 0.002 * 0.002 / 12.0), 1e-4);
+  EXPECT_NEAR(over_seeds().sd, std::sqrt(0.003 * 0.003 + 0.002 * 0.002 / 12.0), 1e-4);
   SensingConfig slow = silent();
   slow.gyro_bias_rad_per_s = 0.002;
   slow.gyro_drift_rad_per_s_per_root_s = 0.01;
@@ -184,16 +194,18 @@ TEST(Sensing, defaults_are_plausible_and_ranges_are_kept) {
 
 TEST(PacketLoss, has_its_share_and_its_bursts) {
   for (const auto& [share, burst_count] : {std::pair(0.01, 2.0), std::pair(0.2, 1.5), std::pair(0.3, 10.0)}) {
-    PacketLoss loss(share, burst_count);
-    base::Random random(11, 0);
-    constexpr int kPackets = 1'000'000;
+    constexpr int kSeeds = 20, kPacketsOfSeed = 50'000, kPackets = kSeeds * kPacketsOfSeed;
     int lost = 0, bursts = 0;
-    bool arrived = true;
-    for (int i = 0; i < kPackets; ++i) {
-      const bool arrives = loss.arrives(random);
-      lost += arrives ? 0 : 1;
-      bursts += !arrives && arrived ? 1 : 0;
-      arrived = arrives;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      PacketLoss loss(share, burst_count);
+      base::Random random(seed, 0);
+      bool arrived = true;
+      for (int i = 0; i < kPacketsOfSeed; ++i) {
+        const bool arrives = loss.arrives(random);
+        lost += arrives ? 0 : 1;
+        bursts += !arrives && arrived ? 1 : 0;
+        arrived = arrives;
+      }
     }
     // Burst lengths are geometric. The tolerance is four standard deviations of a sum over independent bursts.
     const double expected_bursts = kPackets * share / burst_count;
