@@ -17,6 +17,7 @@
 #include "recording/clock_offset.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
+#include "recording/quantities.h"
 #include "recording/spread.h"
 
 namespace heatsoak::calibration {
@@ -77,7 +78,7 @@ bool only_single_rows_exceed(double most, const Reached& reached) { return reach
 void beyond_the_motor(const motor::Motor& motor, const recording::Recording& recording, std::vector<LogProblem>& wrong) {
   const motor::MotorValues& nominal = motor.nominal;
   const double most_A = kMost_ratio * nominal.nominal_voltage_V / nominal.terminal_resistance_ohm;
-  const Reached current_A = reached(recording, "current_A");
+  const Reached current_A = reached(recording, recording::column_of(thermal::Signal::current));
   if (only_single_rows_exceed(most_A, current_A)) {
     wrong.emplace_back(CurrentOutliers{current_A.largest, most_A, current_A.line});
   }
@@ -85,7 +86,7 @@ void beyond_the_motor(const motor::Motor& motor, const recording::Recording& rec
     wrong.emplace_back(CurrentExceedsMotor{reached_A, most_A, nominal.terminal_resistance_ohm});
   }
   const double most_rad_per_s = kMost_ratio * nominal.nominal_voltage_V / nominal.torque_constant_Nm_per_A;
-  const Reached speed_rad_per_s = reached(recording, "speed_rad_per_s");
+  const Reached speed_rad_per_s = reached(recording, recording::column_of(thermal::Signal::speed));
   if (only_single_rows_exceed(most_rad_per_s, speed_rad_per_s)) {
     wrong.emplace_back(SpeedOutliers{speed_rad_per_s.largest, most_rad_per_s, speed_rad_per_s.line});
   }
@@ -103,11 +104,13 @@ double generous_heat_W(const motor::MotorValues& nominal, const recording::Recor
     return channel != nullptr ? channel->values[row] : std::numeric_limits<double>::quiet_NaN();
   };
   const auto known_or = [](double known, double otherwise) { return std::isnan(known) ? otherwise : known; };
-  const double power_W = std::abs(value("power_in_W"));
+  const double power_W = std::abs(value(recording::column_of(thermal::Signal::input_power)));
   const double hot_ratio =
       base::resistance_ratio(nominal.temperature_coefficient_per_K, known_or(value("winding_C"), base::kSheetTemperature_C));
-  const double speed_rad_per_s = known_or(std::abs(value("speed_rad_per_s")), nominal.no_load_speed_rad_per_s.value_or(base::kUnknown));
-  const double copper_W = std::pow(value("current_A"), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
+  const double speed_rad_per_s =
+      known_or(std::abs(value(recording::column_of(thermal::Signal::speed))), nominal.no_load_speed_rad_per_s.value_or(base::kUnknown));
+  const double copper_W =
+      std::pow(value(recording::column_of(thermal::Signal::current)), 2) * nominal.terminal_resistance_ohm * std::max(1.0, hot_ratio);
   const double turning_W = nominal.torque_constant_Nm_per_A * nominal.no_load_current_A * speed_rad_per_s;
   const double of_current_W = copper_W + kSpeedLoss_ratio * known_or(turning_W, 0.0);
   return std::isnan(of_current_W) ? power_W : std::max(of_current_W, known_or(power_W, 0.0));

@@ -27,6 +27,7 @@
 #include "motor/write_motor.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
+#include "recording/quantities.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -266,8 +267,8 @@ class Calibrating {
     double squares_V2 = 0.0;
     for (const recording::Recording& recording : recordings_) {
       const recording::Channel* const voltage = recording.find("motor_V");
-      const recording::Channel* const current = recording.find("current_A");
-      const recording::Channel* const speed = recording.find("speed_rad_per_s");
+      const recording::Channel* const current = recording.find(recording::column_of(thermal::Signal::current));
+      const recording::Channel* const speed = recording.find(recording::column_of(thermal::Signal::speed));
       const recording::Channel* const winding = recording.find("winding_C");
       for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
         const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : base::kSheetTemperature_C;

@@ -14,6 +14,7 @@
 #include "calibration/unlogged_speed.h"
 #include "estimation/log_rows.h"
 #include "motor/datasheet_network.h"
+#include "recording/quantities.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -373,7 +374,7 @@ HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Re
   for (const recording::Recording& each : recordings) {
     if (!has_heat_input(motor, each, HeatInput::current, rules) && !has_heat_input(motor, each, HeatInput::torque, rules)) {
       lacking.push_back({{each.file.string()},
-                         "current_A",
+                         std::string(recording::column_of(thermal::Signal::current)),
                          "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "
                          "computed; add one of the two columns"});
     }

@@ -12,7 +12,7 @@
 namespace heatsoak::estimation {
 namespace {
 
-constexpr std::string_view kAmbientColumn = base::kSignals[base::signal_row("ambient")].column;
+using recording::kAmbientColumn;
 
 bool is_there(const recording::Recording& recording, thermal::Signal signal, const ShaftTorque& torque, bool ignores_current) {
   const auto is_recorded = [&](thermal::Signal each) {
@@ -67,8 +67,6 @@ std::vector<double> bridged(const std::vector<double>* values, const std::vector
 double of(const std::vector<double>* values, std::size_t row) { return values ? (*values)[row] : 0.0; }
 
 }  // namespace
-
-std::string_view column_of(thermal::Signal signal) { return thermal::quantity_of(signal).column; }
 
 std::string_view words_of(thermal::Signal signal) { return thermal::quantity_of(signal).lacking; }
 

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "estimation/measured_run.h"
+#include "recording/quantities.h"
 #include "recording/recording.h"
 
 namespace heatsoak::estimation {
 
-/// Returns the column of a canonical log from which a signal is read; for the shaft power this is the torque.
-std::string_view column_of(thermal::Signal signal);
+using recording::column_of;
 /// Returns the name of a signal in sentences, for example "torque and speed".
 std::string_view words_of(thermal::Signal signal);
 

@@ -14,6 +14,7 @@
 #include "estimation/segment_inputs.h"
 #include "estimation/thresholds.h"
 #include "recording/noise.h"
+#include "recording/quantities.h"
 #include "recording/row_order.h"
 
 namespace heatsoak::estimation {
@@ -92,7 +93,7 @@ class Builder {
     }
     if (!rows_.has_surroundings() && !options_.ambient_C) {
       lacking.push_back({{recording_.file.string()},
-                         "ambient_C",
+                         std::string(recording::kAmbientColumn),
                          "the log has no ambient temperature; state it with --ambient 25degC, in a check file with air = \"25 degC\""});
     }
     if (sensors_.empty()) {

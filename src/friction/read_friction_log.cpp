@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/unknown.h"
+#include "recording/quantities.h"
 
 namespace heatsoak::friction {
 namespace {
@@ -86,7 +87,7 @@ class ColumnsOfRobot {
   }
 
   Column modulated(const Column& modulation) {
-    const Column* battery = column("battery_V") ? column("battery_V") : column("bus_V");
+    const Column* battery = column("battery_V") ? column("battery_V") : column(recording::column_of(base::Signal::bus_voltage));
     note(battery ? VoltageFrom{VoltageFrom::Source::modulation}
                  : VoltageFrom{VoltageFrom::Source::modulation_with_nominal_battery, robot_.battery.nominal_V});
     Column voltage_V = modulation;

@@ -10,6 +10,7 @@
 #include "base/copper.h"
 #include "base/unknown.h"
 #include "recording/noise.h"
+#include "recording/quantities.h"
 #include "recording/row_order.h"
 
 namespace heatsoak::recording {
@@ -330,7 +331,7 @@ bool is_sure(const ClockOffset& offset, double period_s) {
   constexpr double kMuchBetter_ratio = 5.0;
   constexpr double kLeast_s = 0.3;
   constexpr double kLeast_rows = 0.2;
-  constexpr std::array<std::string_view, 2> kDirect{"current_A", "current_q_A"};
+  constexpr std::array<std::string_view, 2> kDirect{column_of(base::Signal::current), "current_q_A"};
   return offset.delay_s && offset.explains_flow && offset.misfit_ratio > kMuchBetter_ratio && offset.temperature == "winding_C" &&
          std::ranges::find(kDirect, offset.heat_input) != kDirect.end() &&
          std::abs(*offset.delay_s) > std::max({kStandardErrors * offset.delay_uncertainty_s, kLeast_s, kLeast_rows * period_s});

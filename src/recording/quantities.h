@@ -28,10 +28,17 @@ struct QuantityType {
 };
 std::span<const QuantityType> quantity_types();
 
+/// Returns the column of a canonical log from which a signal is read; for the shaft power this is the torque.
+constexpr std::string_view column_of(base::Signal signal) { return base::row_of(signal).column; }
+/// Column with the temperature of the air around the motor.
+inline constexpr std::string_view kAmbientColumn = base::kSignals[base::signal_row("ambient")].column;
+
 /// Heat inputs that checks of a log use as a measure of its heat, most direct first. Other columns of QuantityKind::heat_input, such as
 /// motor_d_V or power_out_W, say less about the heat and are not used for this.
-inline constexpr std::array<std::string_view, 9> kHeatColumns{"current_A", "current_q_A",      "power_in_W", "bus_A",          "torque_Nm",
-                                                              "motor_V",   "modulation_ratio", "bus_V",      "speed_rad_per_s"};
+inline constexpr std::array<std::string_view, 9> kHeatColumns{
+    column_of(base::Signal::current),     "current_q_A", column_of(base::Signal::input_power), "bus_A",
+    column_of(base::Signal::shaft_power), "motor_V",     column_of(base::Signal::modulation),  column_of(base::Signal::bus_voltage),
+    column_of(base::Signal::speed)};
 /// The first ones heat the winding before the iron. Voltages and speed can act without load, and then heat the iron.
 inline constexpr std::size_t kWindingHeatColumns = 5;
 /// The first ones imply that no heat is produced where they are 0. Supply voltage and speed do not: a current may flow at standstill.

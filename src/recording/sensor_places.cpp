@@ -56,8 +56,8 @@ class Places {
         channels_(channels),
         winding_(recording.find("winding_C")),
         stator_(recording.find("stator_C")),
-        ambient_(recording.find("ambient_C")),
-        speed_(recording.find("speed_rad_per_s")) {
+        ambient_(recording.find(kAmbientColumn)),
+        speed_(recording.find(column_of(base::Signal::speed))) {
     block_s_ = std::max(5.0 * usual_period_s(recording.time_s), (recording.time_s.back() - recording.time_s.front()) / 200.0);
     find_rests();
   }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/unknown.h"
+#include "recording/quantities.h"
 #include "recording/spread.h"
 
 namespace heatsoak::recording {
@@ -82,7 +83,7 @@ bool never_falls(const Channel& channel, double degree) {
 class Scales {
  public:
   Scales(const Recording& recording, std::optional<double> ambient_C)
-      : recording_(recording), ambient_(recording.find("ambient_C")), stated_C_(ambient_C) {
+      : recording_(recording), ambient_(recording.find(kAmbientColumn)), stated_C_(ambient_C) {
     for (const Channel& channel : recording.channels) {
       if (channel.quantity.kind == QuantityKind::temperature) {
         sensors_.push_back(&channel);

@@ -12,6 +12,7 @@
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
 #include "present/measured/severity_of_kind.h"
+#include "recording/quantities.h"
 
 namespace heatsoak::present {
 namespace {
@@ -235,11 +236,11 @@ std::string say(const calibration::BandIsEstimated& of) {
 std::string_view columns_of(motor::HeatInput heat) {
   switch (heat) {
     case motor::HeatInput::current:
-      return "current_A";
+      return recording::column_of(thermal::Signal::current);
     case motor::HeatInput::torque:
-      return "torque_Nm";
+      return recording::column_of(thermal::Signal::shaft_power);
     case motor::HeatInput::input_power:
-      return "power_in_W";
+      return recording::column_of(thermal::Signal::input_power);
     case motor::HeatInput::power_balance:
       break;
   }
@@ -267,11 +268,11 @@ std::string outliers_in_words(std::string_view channel, double largest, int line
 }
 
 std::string say(const calibration::CurrentOutliers& of) {
-  return outliers_in_words("current_A", of.largest_A, of.line, of.most_A, "A", "milliamperes");
+  return outliers_in_words(recording::column_of(thermal::Signal::current), of.largest_A, of.line, of.most_A, "A", "milliamperes");
 }
 
 std::string say(const calibration::SpeedOutliers& of) {
-  return outliers_in_words("speed_rad_per_s", of.largest_rad_per_s, of.line, of.most_rad_per_s, "rad/s", "rpm");
+  return outliers_in_words(recording::column_of(thermal::Signal::speed), of.largest_rad_per_s, of.line, of.most_rad_per_s, "rad/s", "rpm");
 }
 
 std::string say(const calibration::CurrentExceedsMotor& of) {

@@ -8,6 +8,7 @@
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
+#include "recording/quantities.h"
 
 namespace heatsoak::present {
 namespace {
@@ -20,9 +21,9 @@ std::string say(const calibration::UnseenCondition& of) {
 }
 
 std::string say(const calibration::Extrapolation& of) {
-  const std::string_view input = of.channel == "ambient_C"         ? "an ambient temperature"
-                                 : of.channel == "speed_rad_per_s" ? "a speed"
-                                                                   : "a current";
+  const std::string_view input = of.channel == recording::kAmbientColumn                   ? "an ambient temperature"
+                                 : of.channel == recording::column_of(base::Signal::speed) ? "a speed"
+                                                                                           : "a current";
   return fmt::format("The forecast of {} extrapolates: it has {} of {} {}, the fitted runs had {} to {} {}.", of.recording, input,
                      base::significant(of.value, 3), of.unit, base::significant(of.low, 3), base::significant(of.high, 3), of.unit);
 }
