@@ -9,6 +9,8 @@
 #include <span>
 
 #include "base/diagnostic.h"
+#include "base/quantity.h"
+#include "base/unit_names.h"
 #include "input/number_table.h"
 #include "recording/channel_source.h"
 #include "recording/interval_values.h"
@@ -20,6 +22,7 @@ namespace heatsoak::recording {
 namespace {
 
 constexpr double kUnsorted_share = 0.1;
+constexpr int kTimeDigits = 10;  // of a Unix time in seconds
 
 /// Quantities of a canonical log: all columns whose name is a quantity. Reports the other columns.
 std::vector<QuantityMapping> quantities_of_header(const input::NumberTable& table, const std::string& file, RecordingReport& report) {
@@ -166,10 +169,7 @@ class RecordingStream::Intake {
       }
     }
     if (!time_ && problems.empty()) {
-      const std::vector<std::string> names(table_.header().begin(), table_.header().end());
-      problems.add({log_.string(), table_.header_line(), 1}, "time_s",
-                   fmt::format("there is no such column{}; a foreign log is read with a mapping (--map FILE.toml)",
-                               base::did_you_mean("time_s", names)));
+      problems.add({log_.string(), table_.header_line(), 1}, "time_s", missing_time());
     }
     valid_ = condition(mapping_.valid, mapping_.valid_at, "rows.valid", problems);
     if (!mapping_.run_column.empty()) {
@@ -182,6 +182,23 @@ class RecordingStream::Intake {
       offsets_s_.push_back(source.clock_offset_s());
       furthest_offset_s_ = std::max(furthest_offset_s_, std::abs(source.clock_offset_s()));
     }
+  }
+
+  /// Returns the message about a log without time_s. A column with the time in another unit must not be renamed.
+  [[nodiscard]] std::string missing_time() const {
+    const std::vector<std::string> names(table_.header().begin(), table_.header().end());
+    for (const std::string& name : names) {
+      const std::optional<base::UnitOfName> other = base::unit_of_name(name);
+      if (other && (other->quantity == "time" || other->quantity == "t") && other->unit != "s") {
+        return fmt::format(
+            "there is no such column; '{0}' is in another unit and is read with a mapping (--map FILE.toml): time_s = {{ "
+            "column = \"{0}\", unit = \"{1}\" }}",
+            name, other->unit);
+      }
+    }
+    const std::string similar = base::did_you_mean("time_s", names);
+    return fmt::format("there is no such column{}{} foreign log is read with a mapping (--map FILE.toml)", similar,
+                       similar.empty() ? "; a" : " A");
   }
 
   std::optional<BlockExpression> condition(const std::string& text, const base::Location& at, const char* key,
@@ -346,9 +363,9 @@ class RecordingStream::Intake {
     if (static_cast<double>(report_.repeated_times) > kMost_share * static_cast<double>(rows_with_time_)) {
       throw base::bad_input(
           {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
-          fmt::format("{} of {} rows have the time of the row before, the first at {:g} s; expected a different time for every "
+          fmt::format("{} of {} rows have the time of the row before, the first at {} s; expected a different time for every "
                       "row: is it written with too few digits?",
-                      report_.repeated_times, rows_with_time_, first_backwards_->time_s));
+                      report_.repeated_times, rows_with_time_, base::significant(first_backwards_->time_s, kTimeDigits)));
     }
   }
 
@@ -362,9 +379,10 @@ class RecordingStream::Intake {
     if (static_cast<double>(backwards_) > kUnsorted_share * static_cast<double>(rows_with_time_)) {
       throw base::bad_input(
           {log_.string(), first_backwards_->line, 1}, time_->quantity().key,
-          fmt::format("time does not increase: {} of {} rows would be left out, the first is at {:g} s after {:g} s; expected rows "
+          fmt::format("time does not increase: {} of {} rows would be left out, the first is at {} s after {} s; expected rows "
                       "sorted by time, one recording per file",
-                      backwards_, rows_with_time_, first_backwards_->time_s, first_backwards_->before_s));
+                      backwards_, rows_with_time_, base::significant(first_backwards_->time_s, kTimeDigits),
+                      base::significant(first_backwards_->before_s, kTimeDigits)));
     }
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       const std::string& key = sources_[i].quantity().key;

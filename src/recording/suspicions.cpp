@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "recording/clock_offset.h"
+#include "recording/quantities.h"
 #include "recording/row_order.h"
 #include "recording/sensor_places.h"
 #include "recording/spread.h"
@@ -16,6 +17,8 @@
 
 namespace heatsoak::recording {
 namespace {
+
+using base::Signal;
 
 class Suspector {
  public:
@@ -27,13 +30,16 @@ class Suspector {
     std::ranges::move(suspicious_places(recording_, quality_.channels), std::back_inserter(found_));
     currents();
     speeds();
-    early_answers();
-    const std::size_t of_motors = found_.size();
+    const auto of_motors = static_cast<std::ptrdiff_t>(found_.size());
+    // A wrong unit of the time also falsifies delays, so it is reported before them.
     clock();
+    std::vector<Suspicion> blocking_for_wheels(found_.begin() + of_motors, found_.end());
+    early_answers();
     std::vector<Suspicion> blocking = found_;
+    const auto of_all = static_cast<std::ptrdiff_t>(found_.size());
     angles();
     wheels();
-    std::vector<Suspicion> blocking_for_wheels(found_.begin() + static_cast<std::ptrdiff_t>(of_motors), found_.end());
+    blocking_for_wheels.insert(blocking_for_wheels.end(), found_.begin() + of_all, found_.end());
     short_clock();
     constants();
     limits();
@@ -47,14 +53,14 @@ class Suspector {
   }
 
   void currents() {
-    for (const char* key : {"current_A", "current_q_A", "bus_A"}) {
+    for (const std::string_view key : {column_of(Signal::current), std::string_view("current_q_A"), std::string_view("bus_A")}) {
       const Channel* const current = recording_.find(key);
       if (const double top_A = current != nullptr ? top_of_sizes(current->values) : 0.0; top_A > kLargestCurrent_A) {
-        found_.emplace_back(CurrentTooLarge{key, top_A});
+        found_.emplace_back(CurrentTooLarge{std::string(key), top_A});
       }
     }
-    const Channel* const power = recording_.find("power_in_W");
-    const Channel* const voltage = recording_.find("bus_V");
+    const Channel* const power = recording_.find(column_of(Signal::input_power));
+    const Channel* const voltage = recording_.find(column_of(Signal::bus_voltage));
     const Channel* const supply = recording_.find("bus_A");
     if (power != nullptr && voltage != nullptr && supply != nullptr) {
       std::vector<double> ratios;
@@ -72,8 +78,9 @@ class Suspector {
         found_.emplace_back(PowerOppositeToBus{});
       }
     }
-    if (const Channel* const torque = recording_.find("torque_Nm"); torque != nullptr && recording_.find("current_A") != nullptr) {
-      const Regression answer = pairs(*recording_.find("current_A"), *torque);
+    if (const Channel* const torque = recording_.find(column_of(Signal::shaft_power));
+        torque != nullptr && recording_.find(column_of(Signal::current)) != nullptr) {
+      const Regression answer = pairs(*recording_.find(column_of(Signal::current)), *torque);
       if (answer.points > 20 && answer.correlation_ratio < -0.7) {
         found_.emplace_back(TorqueOppositeToCurrent{});
       }
@@ -98,9 +105,9 @@ class Suspector {
         found_.emplace_back(SpeedTooLarge{channel.quantity.key, fastest});
       }
     }
-    const Channel* const speed = recording_.find("speed_rad_per_s");
-    const Channel* const torque = recording_.find("torque_Nm");
-    const Channel* const power = recording_.find("power_in_W");
+    const Channel* const speed = recording_.find(column_of(Signal::speed));
+    const Channel* const torque = recording_.find(column_of(Signal::shaft_power));
+    const Channel* const power = recording_.find(column_of(Signal::input_power));
     if (speed == nullptr || torque == nullptr || power == nullptr) {
       return;
     }

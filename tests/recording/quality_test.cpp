@@ -9,6 +9,7 @@
 #include "base/diagnostic.h"
 #include "read_log.h"
 #include "recording/noise.h"
+#include "support/seed_rate.h"
 
 namespace heatsoak::recording {
 namespace {
@@ -40,21 +41,23 @@ INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 
 
 /// Second differences of white noise have six times its variance; a slope contributes nothing.
 TEST(Noise, WhiteNoiseOnASlope) {
-  base::Random random(3, 0);
-  std::vector<double> values;
-  for (int i = 0; i < 20000; ++i) {
-    double normal = -6.0;
-    for (int k = 0; k < 12; ++k) {
-      normal += random.uniform();
-    }
-    values.push_back(20.0 + 0.01 * i + 0.2 * normal);
-  }
+  std::vector<double> values(20000);
   const std::vector<std::pair<std::size_t, std::size_t>> runs{{0, values.size()}};
-  EXPECT_NEAR(noise_level(values, runs).noise, 0.2, 0.006);
-  for (double& value : values) {
-    value = 0.5 * std::round(value / 0.5);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    base::Random random(seed, 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double normal = -6.0;
+      for (int k = 0; k < 12; ++k) {
+        normal += random.uniform();
+      }
+      values[i] = 20.0 + 0.01 * static_cast<double>(i) + 0.2 * normal;
+    }
+    EXPECT_NEAR(noise_level(values, runs).noise, 0.2, 0.006) << seed;
+    for (double& value : values) {
+      value = 0.5 * std::round(value / 0.5);
+    }
+    EXPECT_NEAR(noise_level(values, runs).step, 0.5, 1e-9) << seed;
   }
-  EXPECT_NEAR(noise_level(values, runs).step, 0.5, 1e-9);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] = 0.5 * std::floor(1e-3 * static_cast<double>(i));
   }
@@ -63,16 +66,18 @@ TEST(Noise, WhiteNoiseOnASlope) {
 
 /// A fifth of the samples has random values. The encoder's resolution must still be found.
 TEST(Noise, ResolutionAmongBadSamples) {
-  base::Random random(4, 0);
-  std::vector<double> values;
-  for (int i = 0; i < 5000; ++i) {
-    values.push_back(random.uniform() < 0.2 ? 400.0 * random.uniform() - 200.0 : 0.0767 * std::round(200.0 * random.uniform()));
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    base::Random random(seed, 0);
+    std::vector<double> values;
+    for (int i = 0; i < 5000; ++i) {
+      values.push_back(random.uniform() < 0.2 ? 400.0 * random.uniform() - 200.0 : 0.0767 * std::round(200.0 * random.uniform()));
+    }
+    EXPECT_NEAR(resolution_of(values), 0.0767, 1e-9) << seed;
+    for (double& value : values) {
+      value = random.uniform();
+    }
+    EXPECT_EQ(resolution_of(values), 0.0) << seed;
   }
-  EXPECT_NEAR(resolution_of(values), 0.0767, 1e-9);
-  for (double& value : values) {
-    value = random.uniform();
-  }
-  EXPECT_EQ(resolution_of(values), 0.0);
 }
 
 TEST(Screening, PlantedOutliersAreFoundByLine) {
@@ -132,16 +137,31 @@ TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
 /// Loggers that were started by hand one after the other. A current that repeats soon would match at several delays.
 TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
   for (const double delay_s : {-60.0, 25.0, 60.0}) {
+    // Three standard errors hold for more than 99 % of the loads.
+    EXPECT_TRUE(holds_for_share(0.99, 6, [delay_s](std::uint64_t seed) {
+      SyntheticLog log;
+      log.seed = seed;
+      log.delay_s = delay_s;
+      log.current_A = [seed](double t) {
+        base::Random random(static_cast<std::uint64_t>(t / 20.0), seed);
+        return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
+      };
+      const ClockOffset offset = read_text(log.csv()).quality.clock_offsets[0];
+      return offset.delay_s && std::abs(*offset.delay_s - delay_s) < 3.0 * offset.delay_uncertainty_s && offset.delay_uncertainty_s < 2.0;
+    })) << delay_s;
+  }
+}
+
+/// A delay of a minute or less becomes hours in a log whose milliseconds are read as seconds. The wrong unit must be reported first.
+TEST(ClockOffsets, OfALogInMillisecondsFollowTheWrongUnit) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SyntheticLog log;
-    log.delay_s = delay_s;
-    log.current_A = [](double t) {
-      base::Random random(static_cast<std::uint64_t>(t / 20.0), 5);
-      return random.uniform() < 0.4 ? 0.0 : 6.0 * random.uniform();
-    };
-    const ClockOffset offset = read_text(log.csv()).quality.clock_offsets[0];
-    ASSERT_TRUE(offset.delay_s) << testing::PrintToString(offset.why_not);
-    EXPECT_NEAR(*offset.delay_s, delay_s, 3.0 * offset.delay_uncertainty_s);
-    EXPECT_LT(offset.delay_uncertainty_s, 2.0);
+    log.seed = seed;
+    log.delay_s = -5.0;
+    const DataQuality found = read_text(changed(log, [](int, auto& cells) { cells[time] *= 1000.0; })).quality;
+    EXPECT_THAT(found.suspicions, ElementsAre(VariantWith<LastsForDays>(testing::_), VariantWith<RespondsEarly>(testing::_))) << seed;
+    EXPECT_EQ(found.blocking.size(), 2U) << seed;
+    EXPECT_THAT(found.blocking_for_wheels, ElementsAre(VariantWith<LastsForDays>(testing::_))) << seed;
   }
 }
 

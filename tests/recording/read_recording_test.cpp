@@ -94,7 +94,15 @@ TEST(ReadRecording, OtherSeparatorsUnitsAndNamesAreSaid) {
 
 TEST(ReadRecording, WithoutTimeSaysWhatToDo) {
   EXPECT_THAT(failure_of("tme_s,winding_C\n0,20\n"),
-              HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'?"));
+              HasSubstr("log.csv:1:1: error: time_s: there is no such column; did you mean 'tme_s'? A foreign log is read with a mapping"));
+  EXPECT_THAT(failure_of("x_m,winding_C\n0,20\n"), HasSubstr("there is no such column; a foreign log is read with a mapping"));
+  for (const std::string name : {"time_ms", "t_ms"}) {
+    EXPECT_THAT(failure_of(name + ",winding_C\n0,20\n"),
+                HasSubstr("there is no such column; '" + name +
+                          "' is in another unit and is read with a mapping (--map FILE.toml): time_s = { "
+                          "column = \"" +
+                          name + "\", unit = \"ms\" }"));
+  }
 }
 
 TEST(ReadRecording, RowsThatAreNoneAreLeftOutByLine) {

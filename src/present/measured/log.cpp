@@ -59,8 +59,9 @@ std::string clock_text(const recording::ClockOffset& offset) {
     return fmt::format("{} against {}: not determinable, {}", offset.temperature, offset.heat_input,
                        offset.why_not ? words_of(*offset.why_not) : "");
   }
-  return fmt::format("{} follows {} by {:+.2g} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable",
-                     offset.temperature, offset.heat_input, *offset.delay_s, base::significant(offset.delay_uncertainty_s, 2));
+  return fmt::format("{} follows {} by {}{} s ± {} s (standard error); a clock offset and a sensor's lag are indistinguishable",
+                     offset.temperature, offset.heat_input, *offset.delay_s > 0.0 ? "+" : "", base::significant(*offset.delay_s, 2),
+                     base::significant(offset.delay_uncertainty_s, 2));
 }
 
 Table summary_table(const std::string& title, const recording::Recording& recording, const recording::RecordingReport& report,

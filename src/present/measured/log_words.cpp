@@ -77,8 +77,8 @@ std::string delay_text(double delay_s, double uncertainty_s) {
 std::string say(const recording::RespondsEarly& of) {
   return fmt::format(
       "{} responds {} before {} changes, so one of their clocks is off; in a mapping give {} and all columns logged with it clock_offset = "
-      "\"{:.2g} s\"{}",
-      of.temperature, delay_text(of.delay_s, of.delay_uncertainty_s), of.heat_input, of.heat_input, of.delay_s,
+      "\"{} s\"{}",
+      of.temperature, delay_text(of.delay_s, of.delay_uncertainty_s), of.heat_input, of.heat_input, significant(of.delay_s, 2),
       of.is_one_row ? ", or inputs = \"previous_interval\" if a row's inputs describe the interval before it" : "");
 }
 
