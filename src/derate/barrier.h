@@ -13,10 +13,12 @@ class Barrier {
  public:
   Barrier(const Observer& observer, const BarrierRules& rules);
 
-  /// Returns the square, in A², of the largest current at which the barrier holds in every hot case. Assumes that heat grows with current.
-  /// The result is negative if the barrier is violated even without current. The margin is then extrapolated along the line through zero
-  /// and a small current, so that the result has no kink at 0. Accurate to 1 in 10⁶, rounded down. Above (2·most_current)², where it does
-  /// not matter, it is extrapolated along the line through the margins at zero and there. Range −(2·most_current)² to (8·most_current)².
+  /// Returns the square, in A², of the largest current at which the barrier holds in every hot case. The heat must increase with the
+  /// current. The result is rounded down and accurate to 1 in 10⁶.
+  /// It is negative if the barrier is violated even without current. It is then extrapolated linearly in the square of the current, from
+  /// the margins without current and at a small one, so that it has no kink at 0. It is extrapolated too above (2·most_current)², from the
+  /// margins without current and at that square, because its accuracy does not matter there. The range is −(2·most_current)² to
+  /// (8·most_current)².
   double square_A2(double speed_rad_per_s, double stator_C, double winding_C);
   /// Returns the root of square_A2() in A, limited to the range from 0 to the most current of the rules.
   double current_A(double speed_rad_per_s, double stator_C, double winding_C);

@@ -65,8 +65,8 @@ SomeRuns some_of(const std::vector<MeasuredRun>& runs, const std::vector<std::ve
 Posterior fit_of(const Model& model, const SomeRuns& some);
 
 /// Returns `fit`, or a fit with the options `plain` that starts from it. Both are compared after a fit to the first two thirds of the runs:
-/// the one that predicts the last thirds better is returned. The difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per
-/// run.
+/// the one that predicts the last thirds better is returned. The difference of the two is added to the covariance. `own`: the options of
+/// `fit`. Weights and averaging are per run.
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain);
 
 }  // namespace heatsoak::estimation

@@ -17,10 +17,10 @@ class SegmentInputs {
 
   /// Called for every row at which an interval may end.
   using Ends = std::function<void(std::size_t row)>;
-  /// Adds the inputs from `row` to `next`, the next row with known inputs. The inputs of `row` hold until the row after it, or for one
-  /// usual step if rows are missing there. If the rows of the log describe the interval before them, that step ends at `next`. The rest
-  /// is unknown: it gets the values before and after the gap in equal parts, replaced by single cells that were logged, and an uncertainty.
-  /// Rows that lack only the speed are not merged into the gap.
+  /// Adds the inputs of the time from `row` to `next`, the next row with known inputs. The inputs of `row` hold until the row after it. If
+  /// rows are missing there, they hold for one usual step, which ends at `next` if the rows of the log describe the interval before them.
+  /// The remaining time is a gap. Its first half gets the inputs before the gap, its second half those after it. Cells that were logged
+  /// within the gap replace them. The gap gets an uncertainty: one for each row if only the speed is missing, otherwise one as a whole.
   void add(std::size_t row, std::size_t next, MeanInputs& mean, const Ends& ends);
 
  private:

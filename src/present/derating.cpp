@@ -95,8 +95,8 @@ void add_power_off_and_friction(Document& document, const derate::Derating& dera
     cases += fmt::format("{}{} {:.1f} A", cases.empty() ? "" : "; ", each.name, fmt::join(each.allowed_A, ", "));
   }
   document.add_note(Severity::background,
-                    fmt::format("Allowed at standstill {:.0f} s after power-on, if every part was as hot as permitted before (save and "
-                                "restore of the guard): {}.",
+                    fmt::format("A guard that saves and restores its state allows these currents at standstill {:.0f} s after power-on, if "
+                                "the motor was as hot as continuous use permits when the power failed: {}.",
                                 fmt::join(derate::kPowerOffMoments_s, ", "), cases));
   const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
   if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {

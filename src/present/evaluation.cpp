@@ -242,8 +242,8 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
                                              : "nominal values only");
   if (answer.draw_count > 0) {
     first += fmt::format(
-        " {} with other inputs and robot parameters: verdict and range cover all of them; peak, margin and curve are of one, that of the "
-        "seed.",
+        " Verdict and range cover {} with different inputs and robot parameters. Peak, margin and curve are those of the game with nominal "
+        "inputs and this seed.",
         counted(results, &select::MotorEvaluation::games, "game"));
   }
   const auto most = std::ranges::max_element(results, {}, &select::MotorEvaluation::samples);
