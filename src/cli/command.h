@@ -34,7 +34,8 @@ class Session {
   /// replaced by '?'. Answers for people are documents: see show().
   void say(std::string_view text);
   /// Adds the answer: in the width of the terminal, with the notes selected by --explain and --quiet, and as files for --report and --json.
-  void show(const present::Document& document);
+  /// It ends with a list of all files that the command writes, so all of them are added before.
+  void show(present::Document document);
   /// Adds a file that the user requested.
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
   /// Returns whether the chart of an answer is requested: for the file of --plot, which may be empty, or for an HTML report.
@@ -49,8 +50,14 @@ class Session {
   }
   /// Adds a folder for files; it is created together with them or not at all.
   void make_folder(std::filesystem::path path) { folders_.push_back(std::move(path)); }
-  /// Sets a function that runs after all files are written and before the text; for the rename that completes a folder.
+  /// Sets a function that runs after all files are written and before the text.
   void complete_with(std::function<void()> last) { last_ = std::move(last); }
+  /// Does the same with a function that gives a folder, whose files exist under another name, its name.
+  void complete_folder(std::function<void()> rename, std::filesystem::path folder, std::vector<std::filesystem::path> files) {
+    complete_with(std::move(rename));
+    completed_folder_ = std::move(folder);
+    completed_files_ = std::move(files);
+  }
   /// Adds a file that is written only if the command fails, in place of all its other files.
   void write_after_failure(std::filesystem::path path, std::function<std::string(const base::Failure&)> text) {
     after_failure_.emplace_back(std::move(path), std::move(text));
@@ -67,6 +74,8 @@ class Session {
 
  private:
   void add_json(const present::Document& document);
+  /// Returns the names of all files that are added so far.
+  [[nodiscard]] std::vector<std::string> names_of_added() const;
 
   std::string database_;
   std::string json_target_;
@@ -81,6 +90,8 @@ class Session {
   std::vector<base::OutputFile> rewritten_;
   std::vector<std::unique_ptr<base::StreamedFile>> streams_;
   std::function<void()> last_;
+  std::filesystem::path completed_folder_;
+  std::vector<std::filesystem::path> completed_files_;
   std::vector<std::pair<std::filesystem::path, std::function<std::string(const base::Failure&)>>> after_failure_;
 };
 

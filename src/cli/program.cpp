@@ -27,6 +27,7 @@
 #include "present/json.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
+#include "present/written_files.h"
 #include "report/chart.h"
 
 namespace heatsoak::cli {
@@ -266,27 +267,38 @@ void Session::add_answer_options(CLI::App& app) {
 
 void Session::say(std::string_view text) { (report_ == "-" ? beside_ : text_) += printable(text); }
 
-void Session::show(const present::Document& document) {
+std::vector<std::string> Session::names_of_added() const {
+  std::vector<std::filesystem::path> all = completed_files_;
+  std::ranges::transform(streams_, std::back_inserter(all), [](const auto& each) { return each->path(); });
+  std::ranges::transform(files_, std::back_inserter(all), &base::OutputFile::path);
+  std::ranges::transform(rewritten_, std::back_inserter(all), &base::OutputFile::path);
+  std::vector<std::filesystem::path> folders = folders_;
+  folders.push_back(completed_folder_);
+  return present::names_of_written(all, folders);
+}
+
+void Session::show(present::Document document) {
   add_json(document);
+  document.files = names_of_added();
   const int descriptor = json_target_ == "-" ? STDERR_FILENO : STDOUT_FILENO;
   if (report_ == "-") {
     text_ += present::rendered_as("markdown", document);
     return;
+  }
+  if (!report_.empty()) {
+    write(report_, present::rendered_for(report_, document));
+    document.files = names_of_added();
   }
   text_ += present::terminal_text(document, {.width = terminal_width(descriptor),
                                              .with_colors = takes_colors(descriptor),
                                              .is_terminal = isatty(descriptor) == 1,
                                              .explains = explains_,
                                              .is_quiet = is_quiet_});
-  if (!report_.empty()) {
-    write(report_, present::rendered_for(report_, document));
-  }
 }
 
 void Session::draw(present::Document& document, const std::string& plot, report::Chart chart) {
   if (!plot.empty()) {
     write(plot, report::draw_picture(chart, plot));
-    document.add_file(plot);
   }
   document.charts.push_back(std::move(chart));
 }
@@ -349,6 +361,8 @@ void Session::answer_failure(const base::Failure& failure) {
   rewritten_.clear();
   streams_.clear();
   last_ = nullptr;
+  completed_folder_.clear();
+  completed_files_.clear();
   for (const auto& [path, text] : std::exchange(after_failure_, {})) {
     files_.push_back({path, text(failure)});
   }

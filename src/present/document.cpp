@@ -9,12 +9,6 @@ void Document::add_note(Severity severity, std::string_view words) {
   notes.push_back(std::move(note));
 }
 
-void Document::add_file(std::string_view name) {
-  if (!name.empty()) {
-    files.emplace_back(name);
-  }
-}
-
 Document short_answer(std::string sentence, Json data) { return {.headline = {{std::move(sentence)}}, .data = std::move(data)}; }
 
 }  // namespace heatsoak::present

@@ -53,7 +53,7 @@ enum class Severity {
   background,  ///< explains how the answer was made
   note,        ///< limits the accuracy or scope of the answer
   warning,     ///< the answer may be wrong or unsafe to rely on
-  scope,       ///< states what the answer is for and which command gives the other one; always shown
+  scope,       ///< names what the answer does not cover, and the command that does; shown without --explain too
 };
 
 /// One or two sentences; the first states the consequence.
@@ -67,14 +67,12 @@ struct Document {
   std::vector<std::string> paragraphs = {};  ///< computed quantities and their inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
-  std::vector<std::string> files = {};     ///< names of the files that the command writes
+  std::vector<std::string> files = {};     ///< what the command writes; cli::Session fills it for every command
   std::vector<Listing> listings = {};      ///< shown last
   std::vector<report::Chart> charts = {};  ///< only HTML contains them
   Json data = {};                          ///< the same answer for other programs; begins with the key "schema"
 
   void add_note(Severity severity, std::string_view words);
-  /// Adds the name of a written file; ignores an empty name.
-  void add_file(std::string_view name);
 };
 
 /// Returns a document that has only one sentence as its headline.

@@ -94,9 +94,7 @@ Document duty_document(const duty::DutyAnswer& answer) {
   return document;
 }
 
-void add_duty_files(Document& document, const std::string& table, const std::string& description) {
-  document.add_file(table);
-  document.add_file(description);
+void add_next_command(Document& document, const std::string& description) {
   document.add_note(Severity::note, fmt::format("Next: `heatsoak evaluate --duty {}` with a robot.", description));
 }
 

@@ -12,7 +12,7 @@ namespace heatsoak::present {
 Document duty_document(const duty::DutyAnswer& answer);
 Json duty_json(const duty::DutyAnswer& answer);
 
-/// Adds the names of the written table and its duty file, and the command that evaluates them.
-void add_duty_files(Document& document, const std::string& table, const std::string& description);
+/// Adds the command that evaluates the written duty file.
+void add_next_command(Document& document, const std::string& description);
 
 }  // namespace heatsoak::present

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <regex>
 #include <sstream>
 
 #include "program_run.h"
@@ -65,6 +67,29 @@ TEST_P(Verb, has_help_on_stdout) {
   }
 }
 
+/// Returns the number of files, also in subfolders.
+std::ptrdiff_t file_count(const fs::path& folder) {
+  return std::ranges::count_if(fs::recursive_directory_iterator(folder), [](const auto& entry) { return entry.is_regular_file(); });
+}
+
+/// Removes the files from `folder` that the text lists as written. A line names a file, or a folder with the number of its files.
+void remove_listed(const fs::path& folder, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch match;
+    if (!std::regex_match(line, match, std::regex(R"(written: (.*?)(?: \((\d+) files\))?)"))) {
+      continue;
+    }
+    const fs::path listed = folder / match.str(1);
+    ASSERT_TRUE(fs::exists(listed)) << line;
+    EXPECT_EQ(fs::is_directory(listed), match[2].matched) << line;
+    if (match[2].matched) {
+      EXPECT_EQ(file_count(listed), std::stol(match.str(2))) << line;
+    }
+    fs::remove_all(listed);
+  }
+}
+
 // The examples must run in any folder, because all files that they need are installed.
 TEST_P(Verb, has_an_example_that_runs) {
   const std::vector<std::string> lines = examples(GetParam());
@@ -76,7 +101,8 @@ TEST_P(Verb, has_an_example_that_runs) {
     options.environment = {"DISPLAY", "WAYLAND_DISPLAY"};
     options.time_limit_s = 280;
     EXPECT_THAT(line, HasSubstr("heatsoak " + GetParam()));
-    const ProgramRun result = run_line(line, options);
+    const bool answers = line.find("--json") == std::string::npos && run({GetParam(), "--help"}).out.find("--report") != std::string::npos;
+    const ProgramRun result = run_line(line + (answers ? " --report all.md --json all.json" : ""), options);
     EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << line << "\nends with " << result.exit_code << "\n" << result.err;
     EXPECT_THAT(folder.names(), Not(Contains(HasSubstr("partial"))));
     // The example must have written its declared output files.
@@ -87,6 +113,14 @@ TEST_P(Verb, has_an_example_that_runs) {
         EXPECT_TRUE(fs::exists(folder.path() / word)) << word;
       }
     }
+    if (answers) {
+      EXPECT_TRUE(fs::exists(folder.path() / "all.md"));
+      EXPECT_TRUE(fs::exists(folder.path() / "all.json"));
+      EXPECT_EQ(content_of(folder.path() / "all.md").find("written: all.md"), std::string::npos) << "a report does not list itself";
+    }
+    // The answer must list all files that the command has written.
+    remove_listed(folder.path(), result.out + result.err);
+    EXPECT_EQ(file_count(folder.path()), 0) << line << "\nleaves " << testing::PrintToString(folder.names()) << "\n" << result.out;
   }
 }
 

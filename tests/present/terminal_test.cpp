@@ -116,7 +116,7 @@ TEST(Terminal, lines_to_copy_come_last_and_whole) {
   Document document = example();
   const std::string line(150, 'x');
   document.listings = {{"to copy:", line + " y\n"}};
-  document.add_file("a.svg");
+  document.files.emplace_back("a.svg");
   const std::string text = terminal_text(document, {.width = 80, .is_terminal = true});
   EXPECT_TRUE(text.ends_with("\nwritten: a.svg\n\nto copy:\n" + line + " y\n")) << text;
   document.listings[0] = {"", "file.toml:1:1: error: " + line.substr(0, 50) + " and more words\n", true};

@@ -76,9 +76,7 @@ base::ExitCode run(CheckOptions& options, Session& session) {
   if (!options.junit.empty()) {
     session.write(options.junit, present::junit_xml(answer.outcomes, base::program_version()));
   }
-  present::Document document = present::check_document(answer.outcomes, options.job.updates, options.job.files);
-  document.add_file(options.junit);
-  session.show(document);
+  session.show(present::check_document(answer.outcomes, options.job.updates, options.job.files));
   write_github(answer.outcomes, session);
   return answer.passed() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }

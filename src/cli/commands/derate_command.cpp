@@ -91,12 +91,10 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
     return with_progress("searching the safety factor on heat", 5.0,
                          [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
   });
-  present::Document document = present::derating_document(job, answer);
   if (!options.out.empty()) {
     session.write(options.out, answer.text);
-    document.add_file(options.out);
   }
-  session.show(document);
+  session.show(present::derating_document(job, answer));
   return answer.holds() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 

@@ -11,14 +11,13 @@ namespace heatsoak::cli::commands {
 namespace {
 
 base::ExitCode run(const std::string& name, const std::string& diagram, Session& session) {
-  present::Document document = present::description_of(name, session.folders());
+  const present::Document document = present::description_of(name, session.folders());
   if (!diagram.empty()) {
     if (name != present::kCoreTopic) {
       throw base::Failure(base::ExitCode::bad_input,
                           fmt::format("--diagram: '{}' has no block diagram; expected `heatsoak describe {}`", name, present::kCoreTopic));
     }
     session.write(diagram, firmware::core_diagram_svg());
-    document.add_file(diagram);
   }
   session.show(document);
   return base::ExitCode::done;

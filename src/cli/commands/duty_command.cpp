@@ -89,7 +89,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
     std::filesystem::path description = options.out;
     description.replace_extension(".toml");
     session.write(description, duty::duty_file(answer, options.out));
-    present::add_duty_files(document, options.out, description.string());
+    present::add_next_command(document, description.string());
   }
   session.show(document);
   return base::ExitCode::done;

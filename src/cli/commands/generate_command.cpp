@@ -36,7 +36,11 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
                                    progress);
   });
   const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
-  session.complete_with([staged] { staged->commit(); });
+  std::vector<std::filesystem::path> files;
+  for (const firmware::CoreFile& file : core.folder.files) {
+    files.push_back(std::filesystem::path(options.out) / file.path);
+  }
+  session.complete_folder([staged] { staged->commit(); }, options.out, std::move(files));
   session.show(present::core_folder_document({*robot, motor, options.core, options.out}, core));
   return base::ExitCode::done;
 }

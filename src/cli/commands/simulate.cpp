@@ -50,7 +50,6 @@ present::GivenInputs given(const SimulateOptions& options, const Session& sessio
 /// `make` returns the chart; it is called only if the chart is requested.
 template <class Make>
 void show(present::Document document, const SimulateOptions& options, Session& session, const Make& make) {
-  document.add_file(options.out);
   if (session.draws(options.plot)) {
     session.draw(document, options.plot, make());
   }

@@ -146,7 +146,6 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   for (const Note& each : calibration_notes(answer, readings)) {
     document.add_note(each.severity, each.words);
   }
-  document.add_file(out);
   document.data = calibration_json(motor, answer, readings, out);
   return document;
 }

@@ -156,12 +156,9 @@ Document logs_document(std::span<const recording::InspectedLog> logs) {
 }
 
 Document conversion_document(const recording::ConvertedLog& log, const std::string& out) {
-  Document document =
-      short_answer(fmt::format("{} of {} and {} converted.", log.report.rows_kept, base::counted(log.report.rows_in_file, "row"),
-                               base::counted(log.channels, "channel")),
-                   conversion_json(log, out));
-  document.add_file(out);
-  return document;
+  return short_answer(fmt::format("{} of {} and {} converted.", log.report.rows_kept, base::counted(log.report.rows_in_file, "row"),
+                                  base::counted(log.channels, "channel")),
+                      conversion_json(log, out));
 }
 
 std::vector<std::string> left_out_sentences(const recording::RecordingReport& report) {

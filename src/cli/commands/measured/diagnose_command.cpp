@@ -28,7 +28,7 @@ struct DiagnoseOptions {
 };
 
 void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnswer& answer,
-                  const std::vector<recording::LogReading>& readings, present::Document& document, Session& session) {
+                  const std::vector<recording::LogReading>& readings, const present::Document& document, Session& session) {
   const std::filesystem::path folder(options.out);
   session.make_folder(folder);
   std::vector<std::pair<std::string, std::string>> svg;
@@ -41,8 +41,6 @@ void write_folder(const DiagnoseOptions& options, const diagnosis::DiagnosisAnsw
   session.write(folder / (motor.id + ".toml"), motor::to_toml(motor));
   session.write(folder / "diagnosis.json", present::json_text(document.data));
   session.write(folder / "diagnosis.html", present::diagnosis_page(answer, readings, svg));
-  document.add_file(options.out + "/diagnosis.html");
-  document.add_file(fmt::format("{}/{}.toml", options.out, motor.id));
 }
 
 base::ExitCode run(const DiagnoseOptions& options, Session& session) {
@@ -54,7 +52,7 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   const diagnosis::DiagnosisAnswer answer =
       with_progress([&](const base::JobProgress& progress) { return diagnosis::run_diagnosis(job, progress); });
   const std::vector<recording::LogReading>& readings = job.logs.readings;
-  present::Document document = present::diagnosis_document(answer, readings);
+  const present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {
     write_folder(options, answer, readings, document, session);
   }

@@ -71,7 +71,6 @@ base::ExitCode run(const FrictionOptions& options, Session& session) {
   present::Document document = present::friction_document(job, answer);
   if (!options.out.empty()) {
     session.write(options.out, friction::robot_text(answer));
-    document.add_file(options.out);
   }
   if (session.draws(options.plot)) {
     std::string file = options.plot;
