@@ -133,7 +133,7 @@ TEST(CheckWords, name_what_an_answer_lacks) {
             "there is no 'distance.x' in 'planners.fast'; did you mean 'distance_m'?");
   EXPECT_EQ(words(check::NumberMissing{"zzz", "", {"planner", "distance_m"}}),
             "there is no 'zzz' in the answer; expected one of planner, distance_m");
-  EXPECT_EQ(words(check::NumberMissing{"x", "verdict", {}}), 
+  EXPECT_EQ(words(check::NumberMissing{"x", "verdict", {}}),
             "there is no 'x' in 'verdict', which has no members; `--json -` behind the command shows the numbers that it has");
   EXPECT_THAT(words(check::NumberMissing{"zzz", "", std::vector<std::string>(13, "abcdefgh")}), EndsWith("abcdefgh, …"));
   EXPECT_EQ(words(check::NumberIsGroup{"none", {}}), "'none' is empty");

@@ -1,0 +1,125 @@
+// Wording of the findings of diagnoses, in documents and in the model file.
+#include "present/measured/diagnosis_words.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/findings.h"
+#include "diagnosis/findings.h"
+#include "present/measured/diagnosis_output.h"
+
+namespace heatsoak::present {
+namespace {
+
+using testing::HasSubstr;
+
+/// The factor of the curve is part of the sentence, also if the curve is over the time.
+TEST(WordsOfDiagnosis, FactorsOfCurves) {
+  using attribution::Multiplier;
+  const auto sentence = [](const std::string& driver, Multiplier multiplier, double at_knots) {
+    diagnosis::Diagnosis diagnosis;
+    diagnosis::Unexplained heat;
+    heat.node = "winding";
+    heat.other_node = "stator";
+    heat.signals = {driver};
+    heat.multiplier = multiplier;
+    heat.mean_W = 2.0;
+    heat.peak_W = 5.0;
+    heat.curve = {0.0, at_knots};
+    heat.is_in_model = driver != "time";
+    diagnosis.unexplained = {heat};
+    return unexplained_words(diagnosis).front();
+  };
+  EXPECT_EQ(sentence("fan_V", Multiplier::source, 5.0),
+            "Unnamed: heat into the winding that follows fan_V, 2 W on average, up to 5 W. The extended model contains it as a curve.");
+  EXPECT_THAT(sentence("fan_V", Multiplier::excess, 5.0),
+              testing::StartsWith("Unnamed: heat out of the winding that follows the temperature rise of the winding above ambient times a "
+                                  "curve over fan_V, "));
+  EXPECT_THAT(sentence("time", Multiplier::copper, 0.2),
+              testing::StartsWith("Unexplained: heat into the winding that no measured signal explains; it is the copper loss times a "
+                                  "curve over the time since the start of the recording, "));
+  EXPECT_THAT(sentence("time", Multiplier::source, -3.0),
+              testing::StartsWith("Unexplained: heat out of the winding that no measured signal explains; it is a curve over the time "));
+  EXPECT_THAT(sentence("speed", Multiplier::difference, -0.1),
+              HasSubstr("the temperature difference from winding to stator times a curve over speed, "));
+}
+
+TEST(WordsOfDiagnosis, Findings) {
+  using namespace diagnosis;
+  const std::vector<std::pair<DiagnosisFinding, Severity>> severities{
+      {ExtensionsMayImitate{{"contact_law"}}, Severity::warning},
+      {ContradictingRun{}, Severity::warning},
+      {calibration::SignalsMissing{}, Severity::note},
+      {IntervalsOfDataSheet{}, Severity::note},
+      {calibration::RowsTurn{}, Severity::note},
+  };
+  for (const auto& [finding, severity] : severities) {
+    EXPECT_EQ(severity_of(finding), severity) << words_of(finding);
+  }
+}
+
+/// A missing signal has the default of its row; no default is safe for the temperature of a neighbour.
+TEST(WordsOfDiagnosis, MissingSignalsHaveTheAssumptionOfTheirRow) {
+  using thermal::Signal;
+  const auto words = [](std::vector<Signal> signals) {
+    return words_of(diagnosis::DiagnosisFinding(calibration::SignalsMissing{std::move(signals), "loss"}));
+  };
+  EXPECT_EQ(words({Signal::current, Signal::speed}),
+            "no log has current_A and speed_rad_per_s, on which loss depends; the value 0 is used");
+  EXPECT_EQ(words({Signal::neighbour_temperature}),
+            "no log has neighbour_C, on which loss depends; the temperature of the neighbour is treated as unknown");
+}
+
+TEST(WordsOfDiagnosis, Experiments) {
+  diagnosis::Experiment experiment{.effect = "windage", .rival = "iron_loss_eddy", .other = "close the housing"};
+  EXPECT_EQ(experiment_words(experiment), "close the housing");
+  std::set<std::string> words;
+  for (int run = 0; run <= static_cast<int>(diagnosis::PlannedRun::rest_after_standstill); ++run) {
+    experiment.planned = static_cast<diagnosis::PlannedRun>(run);
+    words.insert(experiment_words(experiment));
+  }
+  EXPECT_EQ(words.size(), 7U);
+  EXPECT_FALSE(words.contains(""));
+  experiment.planned = diagnosis::PlannedRun::one_speed_with_currents;
+  experiment.most_A = 2.04;
+  experiment.most_rad_per_s = 150.0;
+  EXPECT_EQ(experiment_words(experiment),
+            "one speed at four currents; with at most 2 A and 150 rad/s the motor gets no hotter than in these runs");
+}
+
+TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
+  diagnosis::Diagnosis found;
+  diagnosis::FoundEffect deviation;
+  deviation.id = "heat_share";
+  deviation.node = "winding";
+  deviation.parameters = {{"deviation", "", -0.3052}};
+  deviation.condition = {{"run", "run4"}};
+  diagnosis::FoundEffect named = deviation;
+  named.name = "fan";
+  diagnosis::FoundEffect sensor = deviation;
+  sensor.id = "sensor_offset_winding";
+  found.effects = {named, deviation, sensor};
+  EXPECT_EQ(
+      notes_of_model_file(found),
+      std::vector<std::string>{"heat_share at the winding in run4: deviation -0.305 ; found in measurements, not a property of the motor"});
+}
+
+TEST(Diagnosis, PageAndJsonKeepTheSeverityOfWarnings) {
+  diagnosis::DiagnosisAnswer answer;
+  answer.findings = {diagnosis::IntervalsOfDataSheet{}, diagnosis::ExtensionsMayImitate{{"contact_law"}}};
+  const Json json = diagnosis_json(answer, {});
+  EXPECT_EQ(json["notes"].size(), 2U);
+  ASSERT_EQ(json["warnings"].size(), 1U);
+  EXPECT_EQ(json["warnings"][0], words_of(answer.findings[1]));
+  const std::string page = diagnosis_page(answer, {}, {});
+  EXPECT_THAT(page, HasSubstr("<li><strong>Warning:</strong> an effect similar to contact_law"));
+  EXPECT_LT(page.find("an effect similar to contact_law"), page.find(words_of(answer.findings[0]).substr(12)));
+}
+
+}  // namespace
+}  // namespace heatsoak::present
