@@ -6,9 +6,8 @@
 #include <unistd.h>
 
 #include "base/files.h"
-#include "check/command_answers.h"
+#include "check/check_job.h"
 #include "check/rewrite.h"
-#include "check/run_checks.h"
 #include "check/typed_outcome.h"
 #include "support/source_folder.h"
 
@@ -42,14 +41,18 @@ class CheckFiles : public testing::Test {
     }
     return "nothing was wrong";
   }
-  /// Returns the outcomes of the only check in the text.
+  [[nodiscard]] CheckJob job_of(const std::string& text, int threads = 1) const {
+    base::write_file(folder_ / "a.check.toml", text);
+    return {.files = {(folder_ / "a.check.toml").string()}, .threads = threads};
+  }
+  /// Returns the outcomes of the text. They point into `answer_`.
   [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
-    file_ = read(text);
-    return run_checks(file_, 1, CommandAnswers());
+    answer_ = run_check_job(job_of(text), kShipped);
+    return answer_.outcomes;
   }
 
   fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_check_{}", static_cast<int>(getpid()));
-  CheckFile file_;
+  CheckAnswer answer_;
 };
 
 TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
@@ -310,11 +313,12 @@ TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
   const std::string text = kHead + "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n" +
                            "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"80\"\n"
                            "[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
-  const CheckFile file = read(text);
-  const std::vector<Outcome> one = run_checks(file, 1, CommandAnswers());
-  const std::vector<Outcome> all = run_checks(file, 0, CommandAnswers());
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].measured->value, all[i].measured->value);
+  const CheckAnswer one = run_check_job(job_of(text, 1), kShipped);
+  const CheckAnswer all = run_check_job(job_of(text, 0), kShipped);
+  ASSERT_EQ(one.outcomes.size(), 2U);
+  ASSERT_EQ(all.outcomes.size(), 2U);
+  for (std::size_t i = 0; i < one.outcomes.size(); ++i) {
+    EXPECT_EQ(one.outcomes[i].measured->value, all.outcomes[i].measured->value);
   }
 }
 
@@ -452,7 +456,8 @@ TEST_F(CheckFiles, MissingFileFailsItsThresholdsOnly) {
   for (std::size_t i = 0; i < meant.size(); ++i) {
     ASSERT_EQ(unknown[i].size(), 2U);
     EXPECT_FALSE(unknown[i][0].passed());
-    EXPECT_THAT(failure_of(unknown[i][0]), testing::AllOf(HasSubstr("there is no "), HasSubstr(fmt::format("did you mean '{}'?", meant[i]))));
+    EXPECT_THAT(failure_of(unknown[i][0]),
+                testing::AllOf(HasSubstr("there is no "), HasSubstr(fmt::format("did you mean '{}'?", meant[i]))));
     EXPECT_TRUE(unknown[i][1].passed());
   }
 }

@@ -8,10 +8,9 @@
 
 #include "base/files.h"
 #include "check/answer_number.h"
-#include "check/command_answers.h"
+#include "check/check_job.h"
 #include "check/not_evaluated.h"
 #include "check/rewrite.h"
-#include "check/run_checks.h"
 #include "check/typed_outcome.h"
 #include "support/source_folder.h"
 
@@ -117,17 +116,18 @@ class CommandChecks : public testing::Test {
   std::vector<Outcome> outcomes(const std::string& limits) {
     text_ = "[[check]]\nname = \"x\"\ncommand = 'heatsoak simulate --motor \"a b\"'\n[check.limits]\n" + limits;
     base::write_file(folder_ / "a.check.toml", text_);
-    file_ = read_check_file(folder_ / "a.check.toml",
+    const std::string file = (folder_ / "a.check.toml").string();
+    // The file is named twice, but its command runs only once.
+    answer_ = run_check_job({.files = {file, file},
+                             .run_command =
+                                 [this](const std::vector<std::string>& words, const fs::path& folder) {
+                                   ++runs_;
+                                   EXPECT_THAT(words, ElementsAre("simulate", "--motor", "a b"));
+                                   EXPECT_EQ(folder, folder_);
+                                   return kAnswer;
+                                 }},
                             {kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource});
-    CommandAnswers answers([this](const std::vector<std::string>& words, const fs::path& folder) {
-      ++runs_;
-      EXPECT_THAT(words, ElementsAre("simulate", "--motor", "a b"));
-      EXPECT_EQ(folder, folder_);
-      return kAnswer;
-    });
-    answers.run(file_.checks);
-    answers.run(file_.checks);
-    return run_checks(file_, 0, answers);
+    return {answer_.outcomes.begin(), answer_.outcomes.begin() + static_cast<std::ptrdiff_t>(answer_.outcomes.size() / 2)};
   }
   std::string problem(const std::string& limits) {
     try {
@@ -140,7 +140,7 @@ class CommandChecks : public testing::Test {
 
   fs::path folder_ = fs::path(testing::TempDir()) / ("heatsoak_numbers_" + std::to_string(getpid()));
   std::string text_;
-  CheckFile file_;
+  CheckAnswer answer_;
   int runs_ = 0;
 };
 

@@ -4,18 +4,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "derate/derating_job.h"
 #include "derate/exporter.h"
 #include "guarded_motor.h"
 
 namespace heatsoak::derate {
 
-/// The paper's motor, derated as `derate` does it.
+/// The paper's motor, derated by the call of `derate`.
 inline const Derating& ecx_derating() {
-  static const Derating derating = [] {
-    Derating made = derate(ecx_32(), twente(), {});
-    made.provenance = provenance_of(ecx_32(), twente(), {});
-    return made;
-  }();
+  static const Derating derating = run_derating({.robot = twente(), .motor = ecx_32(), .options = {}}).derating;
   return derating;
 }
 

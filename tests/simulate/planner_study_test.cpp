@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/diagnostic.h"
 #include "duty/match/match_duty.h"
 #include "firmware/core_config.h"
 #include "jump_energy.h"
@@ -70,6 +71,40 @@ TEST(JerkSweep, has_no_acceleration_twice) {
     EXPECT_EQ(accelerations_m_per_s2.front(), std::min(robot.limits.acceleration_m_per_s2.value(), robot.limits.braking_m_per_s2.value()));
     EXPECT_GT(accelerations_m_per_s2.back(), 1.4 * grip_m_per_s2(robot));
   }
+}
+
+// A plan from rest to rest over the distance d takes 2·√(d/a) if it does not reach the speed limit, and d/v + v/a if it does. A jerk limit
+// makes it longer, and more so the lower it is.
+TEST(JerkSweep, plans_take_longer_with_less_jerk_and_the_shortest_has_a_closed_form) {
+  const robot::Robot robot = shipped_robot("tigers_v2020");
+  const JerkSweep sweep = sweep_jerk(robot, shipped_motor(robot.drive.motor), true, 1);
+  const std::vector<StudyCase> cases = jerk_sweep(sweep.robot);
+  ASSERT_EQ(sweep.results.size(), cases.size());
+  const double fastest_m_per_s = robot.limits.speed_m_per_s.value();
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const StudyResult& each = sweep.results[i];
+    EXPECT_EQ(each.limits.acceleration_m_per_s2, cases[i].acceleration_m_per_s2);
+    EXPECT_EQ(each.limits.jerk_m_per_s3, cases[i].jerk_m_per_s3);
+    EXPECT_GT(each.copper_J, 0.0);
+    if (i > 0 && each.limits.acceleration_m_per_s2 == cases[i - 1].acceleration_m_per_s2) {
+      EXPECT_LT(each.planned_s, sweep.results[i - 1].planned_s) << each.limits.jerk_m_per_s3;
+    }
+    if (each.is_bang_bang()) {
+      double expected_s = 0.0;
+      for (const double distance_m : {0.5, 1.0, 2.0}) {
+        const double a = each.limits.acceleration_m_per_s2;
+        const double top_m_per_s = std::min(fastest_m_per_s, std::sqrt(a * distance_m));
+        expected_s += (distance_m / top_m_per_s + top_m_per_s / a) / 3.0;
+      }
+      EXPECT_NEAR(each.planned_s, expected_s, 0.02 * expected_s) << each.limits.acceleration_m_per_s2;
+    }
+  }
+}
+
+TEST(JerkSweep, needs_the_rotor_inertia) {
+  motor::Motor motor = ecx_32();
+  motor.nominal.rotor_inertia_kg_m2.reset();
+  EXPECT_THROW(sweep_jerk(twente(), motor, true, 1), base::Failure);
 }
 
 /// One game, driven with both planners.

@@ -1,0 +1,94 @@
+// The answer of `lint`: names of files, folders and ids, and every problem in one report.
+#include "duty/lint_files.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/diagnostic.h"
+#include "motor/read_motor.h"
+#include "robot/robot_lint.h"
+#include "support/shipped.h"
+
+namespace heatsoak::duty {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const input::DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
+
+class LintFiles : public testing::Test {
+ protected:
+  LintFiles() { fs::create_directories(folder_); }
+  ~LintFiles() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::string put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  static std::vector<std::string> words(const std::vector<motor::LintFinding>& findings) {
+    std::vector<std::string> all;
+    for (const motor::LintFinding& each : findings) {
+      all.push_back(each.at.file + ": " + message_of(each));
+    }
+    return all;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("lint_files_" + std::to_string(::getpid()));
+};
+
+// A folder is the same as all of its files, an id the same as its file, in the order in which they are named.
+TEST_F(LintFiles, FolderAndIdsStandForTheirFiles) {
+  for (const char* id : {"maxon_ecx_flat_32l_48v", "maxon_ec45_flat_70w_24v"}) {
+    fs::copy(kSource / "motor_db" / (std::string(id) + ".toml"), folder_);
+  }
+  const std::string first = (folder_ / "maxon_ec45_flat_70w_24v.toml").string();
+  const std::string second = (folder_ / "maxon_ecx_flat_32l_48v.toml").string();
+  const FilesLint of_folder = lint_files(std::vector{folder_.string()}, kShipped);
+  const FilesLint of_files = lint_files(std::vector{first, second}, kShipped);
+  EXPECT_THAT(of_folder.files, ElementsAre(first, second));
+  EXPECT_EQ(words(of_folder.findings), words(of_files.findings));
+  const std::string robot = (kSource / "robot_core/robots/roboteam_twente_v2024.toml").string();
+  const FilesLint of_ids = lint_files(std::vector<std::string>{"roboteam_twente_v2024", "division_a_match"}, kShipped);
+  EXPECT_THAT(of_ids.files, ElementsAre(robot, (kSource / "duty_profiles/division_a_match.toml").string()));
+  EXPECT_EQ(words(of_ids.findings), words(robot::lint(robot::read_robot(robot), input::ids_in(kShipped.motors))));
+}
+
+// Findings come from the law of the file's kind: a motor file with the findings of motor::lint(), and one more without rotor inertia.
+TEST_F(LintFiles, MotorWithoutRotorInertiaIsNotedAtItsFile) {
+  std::size_t without = 0;
+  for (const std::string& id : input::ids_in(kShipped.motors)) {
+    const motor::Motor motor = shipped_motor(id);
+    const FilesLint lint = lint_files(std::vector{id}, kShipped);
+    const std::size_t more = motor.nominal.rotor_inertia_kg_m2 ? 0 : 1;
+    without += more;
+    ASSERT_EQ(lint.findings.size(), motor::lint(motor).size() + more) << id;
+    EXPECT_EQ(lint.count(motor::LintFinding::Level::error), 0U) << id;
+    EXPECT_TRUE(more == 0 || lint.findings.back().key == "rotor_inertia") << id;
+  }
+  EXPECT_GT(without, 0U);
+}
+
+// Three broken names in one report: an unknown id, a file that is no TOML, and a folder without files.
+TEST_F(LintFiles, AllProblemsAreReportedAtOnce) {
+  const std::string broken = put("broken.toml", "id = \n");
+  fs::create_directory(folder_ / "empty");
+  try {
+    lint_files(std::vector<std::string>{"maxon_ecx_flat_32l_48", broken, (folder_ / "empty").string(), "division_a_match"}, kShipped);
+    FAIL();
+  } catch (const base::Failure& failure) {
+    EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
+    EXPECT_THAT(failure.message(), HasSubstr("did you mean 'maxon_ecx_flat_32l_48v'?"));
+    EXPECT_THAT(failure.message(), HasSubstr("there is no .toml file in the folder"));
+    ASSERT_FALSE(failure.diagnostics().empty());
+    EXPECT_EQ(failure.diagnostics().front().at.file, broken);
+    EXPECT_EQ(failure.diagnostics().front().at.line, 1);
+  }
+}
+
+}  // namespace
+}  // namespace heatsoak::duty

@@ -1,0 +1,109 @@
+// The answer of `simulate` for a match: the table, the rows of the chart and the verdict must agree with the score of the run.
+#include "simulate/match_simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "base/diagnostic.h"
+#include "support/shipped.h"
+
+namespace heatsoak::simulate {
+namespace {
+
+MatchJob short_job() {
+  MatchJob job{.robot = twente(), .motor = shipped_motor("maxon_ecx_flat_42m_24v"), .duty = {}};
+  job.duty = duty::read_duty(kSource / "duty_profiles/division_b_match.toml");
+  job.guard = GuardUse::off;
+  return job;
+}
+
+/// Returns a column of the table.
+std::vector<double> column(const std::string& csv, const std::string& name) {
+  const auto cells_of = [](const std::string& line) {
+    std::istringstream stream(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(stream, cell, ',');) {
+      cells.push_back(cell);
+    }
+    return cells;
+  };
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> header = cells_of(line);
+  const auto place = static_cast<std::size_t>(std::ranges::find(header, name) - header.begin());
+  std::vector<double> values;
+  while (std::getline(lines, line)) {
+    values.push_back(std::stod(cells_of(line).at(place)));
+  }
+  return values;
+}
+
+TEST(MatchSimulation, table_and_rows_are_those_of_the_scored_run) {
+  MatchJob job = short_job();
+  job.with_table = true;
+  job.with_rows = true;
+  job.every_s = 0.5;
+  const MatchSimulation answer = simulate_match(job);
+  ASSERT_EQ(answer.runs.size(), 1U);
+  const DrivenMatch& only = answer.runs.front();
+  const std::vector<double> time_s = column(only.csv, "time_s");
+  ASSERT_GT(time_s.size(), 2U);
+  for (std::size_t row = 1; row < time_s.size(); ++row) {
+    EXPECT_NEAR(time_s[row] - time_s[row - 1], job.every_s, 1e-6);
+  }
+  EXPECT_NEAR(time_s.back(), only.run.score.time_s, 2.0 * job.every_s);
+  double hottest_C = 0.0;
+  double rows_C = 0.0;
+  for (int wheel = 1; wheel <= 4; ++wheel) {
+    const std::vector<double> winding_C = column(only.csv, "winding_" + std::to_string(wheel) + "_C");
+    hottest_C = std::max(hottest_C, std::ranges::max(winding_C));
+  }
+  for (const MatchRow& row : only.rows) {
+    rows_C = std::max(rows_C, std::ranges::max(row.winding_peak_C));
+  }
+  // Rows of the table are moments, so that they miss short peaks; rows of the chart hold the peak since the row before.
+  EXPECT_LE(hottest_C, only.run.score.winding_peak_C + 1e-3);
+  EXPECT_GT(hottest_C, only.run.score.winding_peak_C - 2.0);
+  EXPECT_NEAR(rows_C, only.run.score.winding_peak_C, 1e-3);
+}
+
+// Both planners drive the same game: bang-bang drives farther and makes more heat. With a winding limit between the two peaks, only the
+// hotter run fails, and it decides.
+TEST(MatchSimulation, the_run_over_the_limit_decides) {
+  MatchJob job = short_job();
+  job.planners = {duty::Planner::jerk_limited, duty::Planner::bang_bang};
+  const MatchSimulation answer = simulate_match(job);
+  ASSERT_EQ(answer.runs.size(), 2U);
+  const DriveScore& jerk = answer.runs[0].run.score;
+  const DriveScore& bang = answer.runs[1].run.score;
+  EXPECT_NEAR(jerk.time_s, bang.time_s, 1e-6);
+  EXPECT_GT(bang.energy.copper_J, jerk.energy.copper_J);
+  EXPECT_EQ(answer.verdict(), select::Verdict::pass);
+  EXPECT_EQ(&answer.deciding(), answer.runs.data());
+  const auto [cooler, hotter] = std::minmax({jerk.winding_peak_C, bang.winding_peak_C});
+  ASSERT_GT(hotter, cooler);
+  job.motor.nominal.winding_limit_C = 0.5 * (cooler + hotter);
+  const MatchSimulation limited = simulate_match(job);
+  const std::size_t hot = bang.winding_peak_C > jerk.winding_peak_C ? 1 : 0;
+  EXPECT_EQ(limited.runs[hot].verdict, select::Verdict::fail);
+  EXPECT_EQ(limited.runs[1 - hot].verdict, select::Verdict::pass);
+  EXPECT_EQ(&limited.deciding(), &limited.runs[hot]);
+  // Only the limit has changed, which no part of the drive reads without a guard.
+  EXPECT_EQ(limited.runs[hot].run.score.winding_peak_C, hotter);
+}
+
+TEST(MatchSimulation, refuses_one_table_for_two_planners_and_a_huge_one) {
+  MatchJob job = short_job();
+  job.with_table = true;
+  job.every_s = 1e-3;
+  EXPECT_THROW(simulate_match(job), base::Failure);
+  job.every_s = 1.0;
+  job.planners = {duty::Planner::jerk_limited, duty::Planner::bang_bang};
+  EXPECT_THROW(simulate_match(job), base::Failure);
+}
+
+}  // namespace
+}  // namespace heatsoak::simulate
