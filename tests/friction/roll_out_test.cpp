@@ -52,24 +52,33 @@ FrictionLog rolled(const robot::PlantConfig& plant, const robot::BodyVelocity& f
   return log;
 }
 
+// A fifth of the rows is lost or wrong, so that single roll-outs are not recognised or give a torque that is off by more.
 TEST(RollOut, of_the_plant_gives_its_damping_and_friction) {
   const robot::PlantConfig plant = rolling_robot();
-  EXPECT_TRUE(holds_for_share(0.95, 10, [&](std::uint64_t seed) {
+  constexpr int kSeeds = 10;
+  constexpr int kRollOuts = 9;
+  std::vector<RollOutResult> results;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     std::vector<FrictionLog> logs;
-    for (std::uint64_t n = 0; n < 8; ++n) {
+    for (std::uint64_t n = 0; n + 1 < kRollOuts; ++n) {
       const double heading_rad = 0.2 + static_cast<double>(n) * std::numbers::pi / 4.0;
-      logs.push_back(rolled(plant, {2.0 * std::cos(heading_rad), 2.0 * std::sin(heading_rad), 0.0}, 9 * seed + n));
+      logs.push_back(rolled(plant, {2.0 * std::cos(heading_rad), 2.0 * std::sin(heading_rad), 0.0}, kRollOuts * seed + n));
     }
-    logs.push_back(rolled(plant, {0.0, 0.0, 20.0}, 9 * seed + 8));
-    const RollOutResult found = roll_out(logs, plant.body, false);
-    EXPECT_EQ(found.runs.size(), 9U) << seed;
+    logs.push_back(rolled(plant, {0.0, 0.0, 20.0}, kRollOuts * seed + kRollOuts - 1));
+    const RollOutResult& found = results.emplace_back(roll_out(logs, plant.body, false));
     EXPECT_EQ(found.runs.back().kind, RollOut::rotation) << seed;
+    EXPECT_NEAR(found.wheel_damping_Nm_s_per_rad[0]->value, 4e-4, 2e-5) << seed;
     for (const RollOutRun& run : found.runs) {
-      EXPECT_NEAR(run.wheel_torque_Nm, 0.012 + 0.0066, 0.001) << seed;
       EXPECT_GT(run.r2_ratio, 0.999) << seed;
     }
-    const Estimate& damping = *found.wheel_damping_Nm_s_per_rad[0];
-    EXPECT_NEAR(damping.value, 4e-4, 2e-5) << seed;
+  }
+  EXPECT_TRUE(holds_for_share(0.95, kSeeds * kRollOuts, [&](std::uint64_t roll_out) {
+    const std::vector<RollOutRun>& runs = results[(roll_out - 1) / kRollOuts].runs;
+    const std::uint64_t place = (roll_out - 1) % kRollOuts;
+    return place < runs.size() && std::abs(runs[place].wheel_torque_Nm - (0.012 + 0.0066)) < 0.001;
+  }));
+  EXPECT_TRUE(holds_for_share(0.95, kSeeds, [&](std::uint64_t seed) {
+    const Estimate& damping = *results[seed - 1].wheel_damping_Nm_s_per_rad[0];
     return damping.interval->low <= 4e-4 && 4e-4 <= damping.interval->high;
   }));
 }

@@ -10,6 +10,11 @@
 #include <variant>
 #include <vector>
 
+// The template looks up words_of() where it is defined.
+#include "present/measured/calibration_words.h"
+#include "present/measured/friction_words.h"
+#include "present/measured/log_words.h"
+
 namespace heatsoak::present {
 
 template <class Finding>

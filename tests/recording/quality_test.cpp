@@ -138,7 +138,7 @@ TEST(ClockOffsets, DelayOfTheTemperaturesIsFound) {
 TEST(ClockOffsets, AMinuteIsFoundWhereTheCurrentDoesNotRepeatItself) {
   for (const double delay_s : {-60.0, 25.0, 60.0}) {
     // Three standard errors hold for more than 99 % of the loads.
-    EXPECT_TRUE(holds_for_share(0.99, 6, [delay_s](std::uint64_t seed) {
+    EXPECT_TRUE(holds_for_share(0.99, 3, [delay_s](std::uint64_t seed) {
       SyntheticLog log;
       log.seed = seed;
       log.delay_s = delay_s;

@@ -70,29 +70,33 @@ TEST(MatchSimulation, table_and_rows_are_those_of_the_scored_run) {
   EXPECT_NEAR(rows_C, only.run.score.winding_peak_C, 1e-3);
 }
 
-// Both planners drive the same game: bang-bang drives farther and makes more heat. With a winding limit between the two peaks, only the
-// hotter run fails, and it decides.
-TEST(MatchSimulation, the_run_over_the_limit_decides) {
+// A motor whose winding limit is below the peak of the same drive fails. Without a guard no part of the drive reads the limit.
+TEST(MatchSimulation, fails_over_the_limit_and_drives_the_same) {
   MatchJob job = short_job();
-  job.planners = {duty::Planner::jerk_limited, duty::Planner::bang_bang};
-  const MatchSimulation answer = simulate_match(job);
-  ASSERT_EQ(answer.runs.size(), 2U);
-  const DriveScore& jerk = answer.runs[0].run.score;
-  const DriveScore& bang = answer.runs[1].run.score;
-  EXPECT_NEAR(jerk.time_s, bang.time_s, 1e-6);
-  EXPECT_GT(bang.energy.copper_J, jerk.energy.copper_J);
-  EXPECT_EQ(answer.verdict(), select::Verdict::pass);
-  EXPECT_EQ(&answer.deciding(), answer.runs.data());
-  const auto [cooler, hotter] = std::minmax({jerk.winding_peak_C, bang.winding_peak_C});
-  ASSERT_GT(hotter, cooler);
-  job.motor.nominal.winding_limit_C = 0.5 * (cooler + hotter);
-  const MatchSimulation limited = simulate_match(job);
-  const std::size_t hot = bang.winding_peak_C > jerk.winding_peak_C ? 1 : 0;
-  EXPECT_EQ(limited.runs[hot].verdict, select::Verdict::fail);
-  EXPECT_EQ(limited.runs[1 - hot].verdict, select::Verdict::pass);
-  EXPECT_EQ(&limited.deciding(), &limited.runs[hot]);
-  // Only the limit has changed, which no part of the drive reads without a guard.
-  EXPECT_EQ(limited.runs[hot].run.score.winding_peak_C, hotter);
+  const MatchSimulation cool = simulate_match(job);
+  EXPECT_EQ(cool.verdict(), select::Verdict::pass);
+  const double peak_C = cool.runs.front().run.score.winding_peak_C;
+  ASSERT_LT(peak_C, job.motor.nominal.winding_limit_C);
+  job.motor.nominal.winding_limit_C = peak_C - 0.1;
+  const MatchSimulation hot = simulate_match(job);
+  EXPECT_EQ(hot.verdict(), select::Verdict::fail);
+  EXPECT_EQ(hot.runs.front().run.score.winding_peak_C, peak_C);
+}
+
+TEST(MatchSimulation, is_decided_by_the_worst_run) {
+  using select::Verdict;
+  const auto deciding = [](const std::vector<Verdict>& verdicts) {
+    MatchSimulation simulation;
+    for (const Verdict verdict : verdicts) {
+      simulation.runs.emplace_back().verdict = verdict;
+    }
+    EXPECT_EQ(simulation.verdict(), simulation.deciding().verdict);
+    return &simulation.deciding() - simulation.runs.data();
+  };
+  EXPECT_EQ(deciding({Verdict::pass, Verdict::pass}), 0);
+  EXPECT_EQ(deciding({Verdict::pass, Verdict::fail}), 1);
+  EXPECT_EQ(deciding({Verdict::infeasible, Verdict::fail}), 1);
+  EXPECT_EQ(deciding({Verdict::pass, Verdict::infeasible}), 1);
 }
 
 TEST(MatchSimulation, refuses_one_table_for_two_planners_and_a_huge_one) {
