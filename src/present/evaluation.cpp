@@ -62,7 +62,8 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
                      : Column{"nominal", "", 0, kLeft, 0, false, "within or over a temperature limit, or short of the demand; no verdict"},
           {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
           {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
-          {"margin", "K", 0, kRight, kLeastForLimit, false, nominal("to the nearer limit")},
+          {"margin", "K", 0, kRight, kLeastForLimit, false,
+           is_drawn ? "to the nearer limit, from the 95th percentile of the samples" : nominal("to the nearer limit")},
           {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
           {"P over", "%", 2, kRight, 0, false, "share of samples over a limit"},
           {"reached after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
@@ -73,7 +74,7 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
           {"stator limit", "°C", 8},
           {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
           {"P interval", "%", 10, kRight, 0, false,
-           "P over of other samples, with 95 % for all looks at the samples together, 97.5 % or more for each"},
+           "P over in the limit of infinitely many samples, with a confidence of 95 % over all repeated tests"},
           {"p95 interval", "°C", 11, kRight, 0, false, "upper end of the peak with other samples, 95 %"}};
 }
 
@@ -242,8 +243,8 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
                                              : "nominal values only");
   if (answer.draw_count > 0) {
     first += fmt::format(
-        " Verdict and range cover {} with different inputs and robot parameters. Peak, margin and curve are those of the game with nominal "
-        "inputs and this seed.",
+        " Verdict, range and margin cover {} with different inputs and robot parameters; the margin is that of the 95th percentile. Peak "
+        "and curve are those of the game with nominal inputs and this seed.",
         counted(results, &select::MotorEvaluation::games, "game"));
   }
   const auto most = std::ranges::max_element(results, {}, &select::MotorEvaluation::samples);
@@ -300,14 +301,13 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
   std::string text;
   for (const select::RestOfHotMotor& each : rests) {
     const std::string rest = each.all_s ? duration_text(*each.all_s)
-                                        : fmt::format("more than {} from {} of {} places in the duty",
-                                                      duration_text(select::kLongestRest_s), each.starts_never, each.starts);
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", duration_text(each.play_s), rest);
+                                        : fmt::format("more than {} at {} of {} moments of the duty", duration_text(select::kLongestRest_s),
+                                                      each.starts_never, each.starts);
+    text += fmt::format("{}{} before {} of play", text.empty() ? "" : ", ", rest, duration_text(each.play_s));
   }
   return fmt::format(
-      "Rest of a hot {} until it can play on within its limits, by time of play: {}. Hot: at its limit, in steady state; "
-      "all values are nominal.",
-      motor_id, text);
+      "Rest of a hot {}, so that it then stays within its limits: {}. Hot: in steady state at its limit; all values are nominal.", motor_id,
+      text);
 }
 
 /// Returns the ranking by samples with its notes.

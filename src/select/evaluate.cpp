@@ -394,7 +394,13 @@ void sort_by_verdict(std::vector<MotorEvaluation>& results) {
   std::ranges::stable_sort(results, {}, [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); });
 }
 
-double nearest_margin_K(const MotorEvaluation& motor) { return std::min(motor.margin_K, motor.stator_margin_K.value_or(motor.margin_K)); }
+double nearest_margin_K(const MotorEvaluation& motor) {
+  const auto margin_K = [&](double limit_C, const Spread95& peak_C) {
+    return limit_C - (motor.games > 0 ? peak_C.p95.value_or(peak_C.nominal) : peak_C.nominal);
+  };
+  const double of_winding_K = margin_K(motor.winding_limit_C, motor.winding_peak_C);
+  return motor.stator_limit_C ? std::min(of_winding_K, margin_K(*motor.stator_limit_C, motor.stator_peak_C)) : of_winding_K;
+}
 
 std::string_view to_string(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kNames{"pass", "marginal", "fail", "infeasible"};

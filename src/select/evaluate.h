@@ -114,7 +114,8 @@ std::vector<duty::WheelDemand> draw_demands(const duty::Duty& duty, const robot:
 void add_draws(std::vector<duty::WheelDemand>& draws, const duty::Duty& duty, const robot::Robot& robot, std::uint64_t seed, int count,
                int threads, const base::Progress& progress = {});
 
-/// Returns the nominal margin to the nearer temperature limit in K; negative if a limit is exceeded.
+/// Returns the margin to the nearer temperature limit in K; negative if a limit is exceeded. It is that of the nominal peak, or on a duty
+/// with draws, whose nominal run is one of many games, that of the 95th percentile.
 double nearest_margin_K(const MotorEvaluation& motor);
 
 /// Sorts by verdict (pass, marginal, fail, infeasible), then by nearest_margin_K(), the largest first.

@@ -243,8 +243,8 @@ TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
       rests.push_back(each.words);
     }
   }
-  EXPECT_THAT(rests, testing::ElementsAre(
-                         AllOf(HasSubstr("hot m until"), HasSubstr("(13 s)"), HasSubstr("5 min (more than 60 min from 3 of 4 places"))));
+  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m, so that"), HasSubstr("13 s before 60 s of play"),
+                                                HasSubstr("more than 60 min at 3 of 4 moments of the duty before 5 min of play"))));
 }
 
 TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limit_without_current) {

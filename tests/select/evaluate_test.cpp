@@ -243,6 +243,30 @@ TEST(PaperCase, the_larger_motors_pass) {
   }
 }
 
+// A motor that is cool in the nominal game and hot in others must not rank before one that is warm in all.
+TEST(Ranking, of_a_drawn_duty_follows_the_95th_percentile) {
+  MotorEvaluation varied;
+  varied.motor_id = "varied";
+  varied.winding_limit_C = 155.0;
+  varied.winding_peak_C = {.nominal = 60.0, .p05 = 40.0, .p50 = 65.0, .p95 = 140.0};
+  varied.margin_K = 95.0;
+  varied.samples = 600;
+  MotorEvaluation steady = varied;
+  steady.motor_id = "steady";
+  steady.winding_peak_C = {.nominal = 80.0, .p05 = 70.0, .p50 = 80.0, .p95 = 90.0};
+  steady.margin_K = 75.0;
+  for (const int games : {0, 75}) {
+    varied.games = steady.games = games;
+    std::vector<MotorEvaluation> results{steady, varied};
+    sort_by_verdict(results);
+    EXPECT_EQ(results.front().motor_id, games > 0 ? "steady" : "varied");
+    EXPECT_EQ(nearest_margin_K(varied), games > 0 ? 15.0 : 95.0);
+  }
+  steady.stator_limit_C = 100.0;
+  steady.stator_peak_C = {.nominal = 70.0, .p05 = 60.0, .p50 = 70.0, .p95 = 92.0};
+  EXPECT_EQ(nearest_margin_K(steady), 8.0) << "the stator is nearer";
+}
+
 TEST(Ranking, best_first) {
   std::vector<motor::Motor> motors;
   for (const auto& file : std::filesystem::directory_iterator(kSource / "motor_db")) {
