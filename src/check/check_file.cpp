@@ -29,8 +29,13 @@ class CheckReader {
   /// `written` is the table in the file. `reported`: problems of other files that were reported before; several checks may
   /// name one file.
   CheckReader(input::Reader table, const input::Value& written, fs::path folder, const input::DataFolders& folders,
-              std::set<std::string>& reported)
-      : table_(std::move(table)), written_(written), folder_(std::move(folder)), folders_(folders), reported_(reported) {}
+              const CheckInputs& check_inputs, std::set<std::string>& reported)
+      : table_(std::move(table)),
+        written_(written),
+        folder_(std::move(folder)),
+        folders_(folders),
+        check_inputs_(check_inputs),
+        reported_(reported) {}
 
   Check read() {
     check_.name = table_.text("name", input::Need::optional).value_or("");
@@ -69,7 +74,7 @@ class CheckReader {
       if (failure.code() != base::ExitCode::bad_input) {
         throw;
       }
-      if (failure.diagnostics().empty()) {
+      if (!failure.message().empty()) {
         table_.problem(key, failure.message());
       }
       for (base::Diagnostic each : failure.diagnostics()) {
@@ -276,8 +281,11 @@ class CheckReader {
       return;
     }
     check_.command = *command;
-    if (const std::string problem = command_words(*command).problem; !problem.empty()) {
-      table_.problem("command", problem);
+    const CommandWords parsed = command_words(*command);
+    if (!parsed.problem.empty()) {
+      table_.problem("command", parsed.problem);
+    } else if (check_inputs_) {
+      named("command", [&] { return inputs_are_valid(check_inputs_, parsed.words, folder_); });
     }
   }
 
@@ -430,6 +438,7 @@ class CheckReader {
   std::optional<input::Reader> limits_;
   fs::path folder_;
   const input::DataFolders& folders_;
+  const CheckInputs& check_inputs_;
   std::set<std::string>& reported_;
   Check check_;
   std::vector<base::Diagnostic> unknown_;
@@ -437,7 +446,7 @@ class CheckReader {
 
 }  // namespace
 
-CheckFile read_check_file(const fs::path& path, const input::DataFolders& folders) {
+CheckFile read_check_file(const fs::path& path, const input::DataFolders& folders, const CheckInputs& check_inputs) {
   const input::Value root = input::read_toml(path);
   base::Diagnostics diagnostics;
   if (const input::Value* one = root.find("check"); one != nullptr && one->kind == input::Value::Kind::table) {
@@ -463,7 +472,7 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   std::set<std::string> reported;
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const base::Location at = tables[i].at("name");
-    CheckReader reader(std::move(tables[i]), *written[i], path.parent_path(), folders, reported);
+    CheckReader reader(std::move(tables[i]), *written[i], path.parent_path(), folders, check_inputs, reported);
     file.checks.push_back(reader.read());
     for (base::Diagnostic each : reader.unknown()) {
       each.key = fmt::format("check[{}].{}", i, each.key);

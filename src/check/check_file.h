@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "check/command_answers.h"
 #include "check/threshold.h"
 #include "derate/derating.h"
 #include "duty/duty.h"
@@ -64,7 +65,8 @@ struct CheckFile {
 /// Reads the file and the robots, duties and motors that it names. Throws Failure (bad_input) with every problem of all of them: unknown
 /// keys with "did you mean", invalid limits, missing settings that a limit needs, and settings that no limit uses. Committed tables, logs
 /// and linted files are not opened here. If one of them is missing, its threshold fails. The same holds if the id or file of a robot, duty
-/// or motor does not exist (Check::unreadable); an unknown id is a problem only beside another one. Commands do not run here.
-CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders);
+/// or motor does not exist (Check::unreadable); an unknown id is a problem only beside another one. Commands do not run here, but
+/// `check_inputs`, if given, reports their mistakes, also unknown ids and missing files.
+CheckFile read_check_file(const std::filesystem::path& path, const input::DataFolders& folders, const CheckInputs& check_inputs = {});
 
 }  // namespace heatsoak::check

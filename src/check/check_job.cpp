@@ -15,13 +15,13 @@ namespace {
 constexpr std::size_t kLargestCheckFile_bytes = 1'000'000;
 
 /// Reads all files; the problems of the invalid ones become one failure.
-void read_check_files(const std::vector<std::string>& names, const input::DataFolders& folders, CheckAnswer& answer) {
+void read_check_files(const CheckJob& job, const input::DataFolders& folders, CheckAnswer& answer) {
   std::string message;
   std::vector<base::Diagnostic> problems;
-  for (const std::string& name : names) {
+  for (const std::string& name : job.files) {
     try {
       // The example in the help is a file that came with the program.
-      answer.files.push_back(read_check_file(input::log_named(folders, name), folders));
+      answer.files.push_back(read_check_file(input::log_named(folders, name), folders, job.check_inputs));
     } catch (const base::Failure& failure) {
       if (failure.code() != base::ExitCode::bad_input) {
         throw;
@@ -52,7 +52,7 @@ bool CheckAnswer::passed() const { return !invalid && std::ranges::all_of(outcom
 
 CheckAnswer run_check_job(const CheckJob& job, const input::DataFolders& folders, const base::JobProgress& progress) {
   CheckAnswer answer;
-  read_check_files(job.files, folders, answer);
+  read_check_files(job, folders, answer);
   if (answer.invalid && !job.evaluates_beside_invalid) {
     throw base::Failure(*answer.invalid);
   }

@@ -20,7 +20,8 @@ struct CheckJob {
   int threads = 0;                 ///< 0: all cores; the result does not depend on it
   /// If some files are invalid, evaluate the others all the same, without `updates`, for a report that names every limit.
   bool evaluates_beside_invalid = false;
-  RunCommand run_command = {};  ///< for the checks with a command
+  RunCommand run_command = {};    ///< for the checks with a command
+  CheckInputs check_inputs = {};  ///< for the same checks
 };
 
 struct RewrittenFile {

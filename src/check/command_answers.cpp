@@ -54,6 +54,19 @@ CommandWords command_words(std::string_view text) {
   return all;
 }
 
+bool inputs_are_valid(const CheckInputs& check_inputs, const std::vector<std::string>& words, const std::filesystem::path& folder) {
+  try {
+    check_inputs(words, folder);
+    return true;
+  } catch (const base::Failure& failure) {
+    std::vector<base::Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
+    for (base::Diagnostic& each : all) {
+      each.at.file = each.at.file.empty() ? "" : (folder / each.at.file).lexically_normal().string();
+    }
+    throw base::Failure(failure.code(), failure.message(), std::move(all));
+  }
+}
+
 void CommandAnswers::run(std::span<const Check> checks) {
   for (const Check& check : checks) {
     if (check.command.empty()) {

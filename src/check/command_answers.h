@@ -20,6 +20,9 @@ struct Check;
 /// Runs a command in a folder, writes none of its files, and returns its JSON answer. Throws Failure like the command.
 using RunCommand = std::function<nlohmann::ordered_json(const std::vector<std::string>& words, const std::filesystem::path& folder)>;
 
+/// Parses a command and reads its inputs in a folder, but computes nothing. Throws Failure (bad_input) with all mistakes.
+using CheckInputs = std::function<void(const std::vector<std::string>& words, const std::filesystem::path& folder)>;
+
 struct CommandWords {
   std::vector<std::string> words;  ///< without "heatsoak"
   std::string problem;             ///< empty if the words are valid
@@ -27,6 +30,9 @@ struct CommandWords {
 
 /// Splits a command line at spaces. Text in single or double quotes is one word; there are no escapes.
 CommandWords command_words(std::string_view text);
+
+/// Returns true, or throws the mistakes that `check_inputs` finds, with paths that are valid in the working directory.
+bool inputs_are_valid(const CheckInputs& check_inputs, const std::vector<std::string>& words, const std::filesystem::path& folder);
 
 /// Answers of the commands of checks.
 class CommandAnswers {

@@ -1,6 +1,7 @@
 // Definition of a command, and what all commands share. One file in src/cli/commands each.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +21,9 @@ class App;
 }
 
 namespace heatsoak::cli {
+
+/// Thrown in place of a computation if only the inputs of a command are read: see Session::stop_at_computation().
+class InputsRead : public std::exception {};
 
 /// Options that every command has, and the destinations of its output.
 class Session {
@@ -62,11 +66,23 @@ class Session {
   void write_after_failure(std::filesystem::path path, std::function<std::string(const base::Failure&)> text) {
     after_failure_.emplace_back(std::move(path), std::move(text));
   }
+  /// If only the inputs are read, throws Failure (bad_input) with all the files that cannot be read; otherwise they are reported when they
+  /// are read. `names` as input::log_named() resolves them.
+  void require_readable(const std::vector<std::string>& names) const;
+  /// Marks the end of a command's inputs: their mistakes are reported, and the computation begins.
+  void begin_computation() const {
+    if (stops_at_computation_) {
+      throw InputsRead();
+    }
+  }
+  void stop_at_computation() { stops_at_computation_ = true; }
+  [[nodiscard]] bool stops_at_computation() const { return stops_at_computation_; }
   void finish();
   /// Reports the failure instead of all other output.
   void answer_failure(const base::Failure& failure);
   void set_json_target(std::string target) { json_target_ = std::move(target); }
   [[nodiscard]] bool gives_json() const { return !json_target_.empty(); }
+  [[nodiscard]] bool gives_json_on_stdout() const { return json_target_ == "-"; }
   /// Returns the answer for stdout; null if there is none.
   [[nodiscard]] present::Json stdout_json() const;
   /// Returns the folder of --db; empty without it.
@@ -82,6 +98,7 @@ class Session {
   std::string report_;
   bool explains_ = false;
   bool is_quiet_ = false;
+  bool stops_at_computation_ = false;
   std::string text_;       ///< contains no control characters except colours
   std::string beside_;     ///< text of say() beside a report on stdout: for stderr
   std::string json_text_;  ///< for stdout
@@ -95,6 +112,22 @@ class Session {
   std::vector<std::pair<std::filesystem::path, std::function<std::string(const base::Failure&)>>> after_failure_;
 };
 
+/// Begins the computation of a command, shows its progress and returns its result.
+template <class Run>
+auto with_progress(const Session& session, const Run& run) {
+  session.begin_computation();
+  const JobLine line;
+  return run(line.progress());
+}
+/// Does the same with a job of one phase, named `what`, which gets a base::Progress. `usual_s`: its usual duration.
+template <class Run>
+auto with_progress(const Session& session, const std::string& what, double usual_s, const Run& run) {
+  session.begin_computation();
+  const JobLine line;
+  line.progress().expect({{what, usual_s}});
+  return run(line.progress().begin(what));
+}
+
 struct Command {
   std::string_view name;  ///< name of its source file without a trailing "_command"; set by all_commands()
   std::string_view summary;
@@ -106,7 +139,10 @@ std::vector<Command> all_commands();
 
 /// Runs a command in a folder and returns its JSON answer; prints nothing and writes no file. `database`: folder for --db unless the words
 /// name one; may be empty. Throws Failure like the command, and if it has no JSON answer. Changes the working directory while it runs.
-present::Json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database);
+present::Json answer_of(const std::vector<std::string>& words, const std::filesystem::path& folder, const std::string& database);
+/// Parses the words and reads the inputs of a command that answer_of() can run, but does not compute. Throws Failure (bad_input) with
+/// mistakes in them; other failures are those of the answer.
+void check_inputs_of(const std::vector<std::string>& words, const std::filesystem::path& folder, const std::string& database);
 
 /// Runs the whole program and returns the exit code. Never throws.
 int run_program(int argc, const char* const* argv);

@@ -7,9 +7,11 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -23,6 +25,7 @@
 #include "cli/terminal.h"
 #include "cli/usage.h"
 #include "input/document.h"
+#include "present/failure_words.h"
 #include "present/github.h"
 #include "present/json.h"
 #include "present/renderer.h"
@@ -305,6 +308,20 @@ void Session::draw(present::Document& document, const std::string& plot, report:
 
 input::DataFolders Session::folders() const { return input::DataFolders::find(database_); }
 
+void Session::require_readable(const std::vector<std::string>& names) const {
+  if (!stops_at_computation_) {
+    return;
+  }
+  base::Diagnostics missing;
+  for (const std::string& name : names) {
+    const std::filesystem::path path = input::log_named(folders(), name);
+    if (!std::ifstream(path)) {
+      missing.add({path.string()}, "", fmt::format("cannot be read: {}", std::strerror(errno)));
+    }
+  }
+  missing.throw_if_any();
+}
+
 void Session::add_json(const present::Document& document) {
   if (json_target_ == "-") {
     json_text_ = present::rendered_as("json", document);
@@ -382,19 +399,25 @@ void Session::answer_failure(const base::Failure& failure) {
 
 present::Json Session::stdout_json() const { return json_text_.empty() ? present::Json() : present::Json::parse(json_text_); }
 
-present::Json answer_of(std::vector<std::string> words, const std::filesystem::path& folder, const std::string& database) {
+namespace {
+
+/// Adds --db unless the words have it. Must be called before the working directory changes.
+std::vector<std::string> with_database(std::vector<std::string> words, const std::string& database) {
   const bool has_database = std::ranges::any_of(words, [](const std::string& word) { return word == "--db" || word.starts_with("--db="); });
   if (!database.empty() && !has_database) {
     words.insert(words.end(), {"--db", std::filesystem::absolute(database).string()});
   }
-  Session session;
+  return words;
+}
+
+/// Runs a command with its JSON answer on stdout of the session.
+void run_words(const std::vector<std::string>& words, Session& session) {
   CLI::App app(kSummary, "heatsoak");
   base::ExitCode code = base::ExitCode::done;
   declare_commands(app, session, code);
   std::vector<const char*> raw{"heatsoak"};
   std::ranges::transform(words, std::back_inserter(raw), [](const std::string& word) { return word.c_str(); });
   const std::span<const char* const> after_name = std::span(raw).subspan(1);
-  const WorkingFolder here(folder.empty() ? "." : folder);
   session.set_json_target("-");
   check_words(app, after_name);
   try {
@@ -404,13 +427,56 @@ present::Json answer_of(std::vector<std::string> words, const std::filesystem::p
       static_cast<void>(code_of(error, app, after_name));
     }
   }
+}
+
+base::Failure without_answer(const std::vector<std::string>& words) {
+  return {base::ExitCode::bad_input,
+          fmt::format("`heatsoak {}` has no JSON answer on stdout; expected a command with one, without --json", fmt::join(words, " "))};
+}
+
+/// Returns the failure with its message on one line, for the diagnostic of another file.
+base::Failure on_one_line(const base::Failure& failure) {
+  std::string message;
+  for (const char c : failure.message()) {
+    message += c == '\n' ? std::string("; ") : std::string(1, c);
+  }
+  return {failure.code(), std::move(message), {failure.diagnostics().begin(), failure.diagnostics().end()}};
+}
+
+}  // namespace
+
+present::Json answer_of(const std::vector<std::string>& words, const std::filesystem::path& folder, const std::string& database) {
+  const std::vector<std::string> all = with_database(words, database);
+  const WorkingFolder here(folder.empty() ? "." : folder);
+  Session session;
+  run_words(all, session);
   present::Json answer = session.stdout_json();
   if (answer.is_null()) {
-    throw base::Failure(base::ExitCode::bad_input, fmt::format("`heatsoak {}` has no JSON answer on stdout; expected a command with one, "
-                                                               "without --json",
-                                                               fmt::join(words, " ")));
+    throw without_answer(words);
   }
   return answer;
+}
+
+void check_inputs_of(const std::vector<std::string>& words, const std::filesystem::path& folder, const std::string& database) {
+  const std::vector<std::string> all = with_database(words, database);
+  const WorkingFolder here(folder.empty() ? "." : folder);
+  Session session;
+  session.stop_at_computation();
+  bool has_answer = false;
+  try {
+    run_words(all, session);
+    has_answer = !session.stdout_json().is_null();
+  } catch (const InputsRead&) {
+    has_answer = session.gives_json_on_stdout();
+  } catch (const base::Failure& failure) {
+    if (failure.code() == base::ExitCode::bad_input) {
+      throw with_places(on_one_line(present::in_words(failure)));
+    }
+    return;
+  }
+  if (!has_answer) {
+    throw without_answer(words);
+  }
 }
 
 std::vector<Command> all_commands() {

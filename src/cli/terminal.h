@@ -32,20 +32,6 @@ class JobLine {
   std::unique_ptr<Painter> painter_;
 };
 
-/// Runs a job with a progress line and returns its result.
-template <class Run>
-auto with_progress(const Run& run) {
-  const JobLine line;
-  return run(line.progress());
-}
-/// Runs a job of one phase, named `what`, which gets a base::Progress. `usual_s`: its usual duration.
-template <class Run>
-auto with_progress(const std::string& what, double usual_s, const Run& run) {
-  const JobLine line;
-  line.progress().expect({{what, usual_s}});
-  return run(line.progress().begin(what));
-}
-
 /// If stderr is a terminal, an interrupt (Ctrl-C) then replaces the progress line by the word "interrupted" before it ends the program.
 void announce_interrupts();
 

@@ -154,7 +154,7 @@ class CommandOfACheck : public EveryNumber {
   }
 };
 
-TEST_F(CommandOfACheck, ThatFailsFailsItsLimitsWithTheReason) {
+TEST_F(CommandOfACheck, ThatIsWrongIsAMistakeInTheFile) {
   const std::string limit = "heat_reserve_ratio = \"at most 2\"\n";
   for (const auto& [command, reason] : std::vector<std::pair<std::string, std::string>>{
            {"derate --motor no_such_motor --robot roboteam_twente_v2024", "there is no motor"},
@@ -164,10 +164,46 @@ TEST_F(CommandOfACheck, ThatFailsFailsItsLimitsWithTheReason) {
            {"completion bash", "has no JSON answer"},
            {"derate --motor maxon_ecx_flat_42m_24v --robot roboteam_twente_v2024 --samples 60 --json x.json", "without --json"}}) {
     const ProgramRun done = checked(command, limit);
-    EXPECT_EQ(done.exit_code, 1) << command << done.err;
-    EXPECT_THAT(std::regex_replace(done.out, std::regex("\\s+"), " "), HasSubstr(reason)) << command;
+    EXPECT_EQ(done.exit_code, 2) << command << done.err;
+    EXPECT_THAT(done.err, HasSubstr("a.check.toml:3:11: error: check[0].command: ")) << command;
+    EXPECT_THAT(done.err, HasSubstr(reason)) << command;
     EXPECT_THAT(folder_.names(), ElementsAre("a.check.toml")) << command;
   }
+}
+
+// The second check would compute for minutes.
+TEST_F(CommandOfACheck, ThatIsWrongIsReportedWithAllMistakesBeforeAnythingIsComputed) {
+  std::filesystem::create_directories(folder_.path() / "checks");
+  write(folder_.path() / "checks/bad_motor.toml", "name = \"x\"\nfigures = 3\n");
+  std::string text;
+  for (const char* command : {"evaluate --robot roboteam_twente_v2024 --duty division_a_match --sample 80",
+                              "derate --motor maxon_ecx_flat_42m_24v --robot roboteam_twente_v2024 --samples 100000",
+                              "predict --model maxon_ec45_flat_70w_24v missing.csv", "friction --robot roboteam_twente_v2024 missing.csv",
+                              "duty --robot roboteam_twente_v2024 --import missing.csv",
+                              "simulate --motor bad_motor.toml --robot roboteam_twente_v2024 --duty division_a_match",
+                              "evaluate --robot roboteam_twente_v2024 --duty division_a_match --motors no_such_motor --samples none"}) {
+    text += fmt::format("[[check]]\nname = \"{0}\"\ncommand = \"{0}\"\n[check.limits]\nx = \"at most 1\"\n", command);
+  }
+  write(folder_.path() / "checks/a.check.toml", text + "[[check]]\nname = \"empty\"\n");
+  const ProgramRun done = run({"check", "checks/a.check.toml"}, options_);
+  EXPECT_EQ(done.exit_code, 2);
+  const auto at = [](int check) { return fmt::format("checks/a.check.toml:{}:11: error: check[{}].command: ", 5 * check + 3, check); };
+  EXPECT_THAT(done.err, HasSubstr(at(0)));
+  EXPECT_THAT(done.err, HasSubstr("did you mean '--samples'"));
+  EXPECT_THAT(done.err, testing::Not(HasSubstr(at(1))));
+  for (const int missing : {2, 3, 4}) {
+    EXPECT_THAT(done.err, HasSubstr(at(missing) + "checks/missing.csv: cannot be read")) << done.err;
+  }
+  EXPECT_THAT(done.err, HasSubstr("checks/bad_motor.toml:2:")) << "the place in the motor's own file";
+  EXPECT_THAT(done.err, HasSubstr(at(6)));
+  EXPECT_THAT(done.err, HasSubstr("check[7].limits: is missing")) << "a mistake of another kind";
+}
+
+TEST_F(CommandOfACheck, ThatFailsWhileItComputesFailsItsLimitsWithTheReason) {
+  const ProgramRun done = checked("derate --motor maxon_ecx_flat_42m_24v --robot roboteam_twente_v2024 --samples 20 --confidence 99.9%",
+                                  "heat_reserve_ratio = \"at most 2\"\n");
+  EXPECT_EQ(done.exit_code, 1) << done.err;
+  EXPECT_THAT(std::regex_replace(done.out, std::regex("\\s+"), " "), HasSubstr("samples")) << done.out;
 }
 
 TEST_F(CommandOfACheck, RunsInTheFolderOfItsFileWithTheDataFolder) {

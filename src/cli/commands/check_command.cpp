@@ -59,13 +59,17 @@ base::ExitCode run(CheckOptions& options, Session& session) {
   options.job.run_command = [&session](const std::vector<std::string>& words, const std::filesystem::path& folder) {
     return answer_of(words, folder, session.database());
   };
+  options.job.check_inputs = [&session](const std::vector<std::string>& words, const std::filesystem::path& folder) {
+    check_inputs_of(words, folder, session.database());
+  };
   const auto kept = std::make_shared<check::CheckAnswer>();
   if (!options.junit.empty()) {
     session.write_after_failure(options.junit, [kept](const base::Failure& failure) {
       return present::junit_xml(kept->outcomes, failure, base::program_version());
     });
   }
-  *kept = with_progress([&](const base::JobProgress& progress) { return check::run_check_job(options.job, session.folders(), progress); });
+  *kept = with_progress(session,
+                        [&](const base::JobProgress& progress) { return check::run_check_job(options.job, session.folders(), progress); });
   const check::CheckAnswer& answer = *kept;
   if (answer.invalid) {
     throw base::Failure(*answer.invalid);

@@ -88,7 +88,7 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
   job.compiler = options.compiler;
   job.committed = options.committed;
   const derate::DeratingAnswer answer = present::with_words([&] {
-    return with_progress("searching the safety factor on heat", 5.0,
+    return with_progress(session, "searching the safety factor on heat", 5.0,
                          [&](const base::Progress& progress) { return derate::run_derating(job, progress); });
   });
   if (!options.out.empty()) {

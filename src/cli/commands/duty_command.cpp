@@ -45,9 +45,9 @@ void refuse(const DutyOptions& options, std::initializer_list<std::string_view> 
   }
 }
 
-duty::DutyAnswer answer_of(const duty::DutyJob& job) {
+duty::DutyAnswer answer_of(const duty::DutyJob& job, const Session& session) {
   try {
-    return with_progress([&](const base::JobProgress& progress) { return duty::make_duty(job, progress); });
+    return with_progress(session, [&](const base::JobProgress& progress) { return duty::make_duty(job, progress); });
   } catch (const duty::GameNotUsable& failure) {
     throw present::in_words(failure);
   }
@@ -69,6 +69,9 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const std::optional<duty::Duty> duty = options.log.empty() ? named.duty(options.duty) : std::nullopt;
   named.throw_if_any();
+  if (!duty) {
+    session.require_readable({options.log});
+  }
   duty::DutyJob job{.robot = *robot, .duty = duty, .log = options.log, .player = options.player, .every_s = options.every_s};
   if (is_given(options, "--seed")) {
     job.seed = options.seed;
@@ -83,7 +86,7 @@ base::ExitCode run(const DutyOptions& options, Session& session) {
       table->write(text);
     };
   }
-  const duty::DutyAnswer answer = answer_of(job);
+  const duty::DutyAnswer answer = answer_of(job, session);
   present::Document document = present::duty_document(answer);
   if (!options.out.empty()) {
     std::filesystem::path description = options.out;

@@ -87,7 +87,7 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& se
 base::ExitCode run(const EvaluateOptions& options, Session& session) {
   const simulate::EvaluationJob job = job_of(options, session);
   const simulate::EvaluationAnswer answer =
-      with_progress([&](const base::JobProgress& progress) { return simulate::run_evaluation(job, progress); });
+      with_progress(session, [&](const base::JobProgress& progress) { return simulate::run_evaluation(job, progress); });
   present::Document document = present::evaluation_document(answer);
   if (session.draws(options.plot)) {
     session.draw(document, options.plot, present::evaluation_chart(answer));

@@ -31,10 +31,11 @@ base::ExitCode run(const GenerateOptions& options, Session& session) {
   duty::NamedFiles named(session.folders());
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const motor::Motor motor = guarded_motor(options.guard, named);
-  const firmware::GeneratedCore core = with_progress("searching the safety factor on heat", 5.0, [&](const base::Progress& progress) {
-    return firmware::generate_core(*robot, motor, options.core, options.guard.derate, fmt::format("heatsoak {}", base::program_version()),
-                                   progress);
-  });
+  const firmware::GeneratedCore core =
+      with_progress(session, "searching the safety factor on heat", 5.0, [&](const base::Progress& progress) {
+        return firmware::generate_core(*robot, motor, options.core, options.guard.derate,
+                                       fmt::format("heatsoak {}", base::program_version()), progress);
+      });
   const auto staged = std::make_shared<firmware::StagedFolder>(options.out, core.folder.files, options.force);
   std::vector<std::filesystem::path> files;
   for (const firmware::CoreFile& file : core.folder.files) {

@@ -70,6 +70,7 @@ base::ExitCode run_load(const SimulateOptions& options, select::LoadJob job, Ses
   job.seed = options.seed;
   job.every_s = options.every_s;
   job.with_curves = session.draws(options.plot);
+  session.begin_computation();
   const select::LoadSimulation simulation = select::simulate_load(job);
   if (!options.out.empty()) {
     session.write(options.out, select::to_csv(simulation.trace));
@@ -94,7 +95,7 @@ base::ExitCode run_match(const SimulateOptions& options, simulate::MatchJob job,
   job.every_s = options.every_s;
   job.with_rows = session.draws(options.plot);
   simulate::MatchSimulation match =
-      with_progress([&](const base::JobProgress& progress) { return simulate::simulate_match(job, progress); });
+      with_progress(session, [&](const base::JobProgress& progress) { return simulate::simulate_match(job, progress); });
   if (job.with_table) {
     session.write(options.out, std::move(match.runs.front().csv));
   }
@@ -106,7 +107,7 @@ base::ExitCode run_sweep(const SimulateOptions& options, const robot::Robot& rob
   if (!options.out.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "--jerk-sweep has no signals to write; expected --plot or --json in place of --out");
   }
-  const simulate::JerkSweep sweep = with_progress("driving", 10.0, [&](const base::Progress& progress) {
+  const simulate::JerkSweep sweep = with_progress(session, "driving", 10.0, [&](const base::Progress& progress) {
     return simulate::sweep_jerk(robot, motor, options.sensing == "ideal", options.seed, progress);
   });
   show(present::jerk_sweep_document(sweep), options, session, [&] { return present::jerk_sweep_chart(sweep); });

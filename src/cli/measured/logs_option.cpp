@@ -19,4 +19,10 @@ recording::LogChoice choice_of(recording::LogChoice choice, const Session& sessi
   return choice;
 }
 
+void require_read(const recording::NamedLogs& logs, const Session& session) {
+  if (session.stops_at_computation()) {
+    logs.unread.throw_if_any();
+  }
+}
+
 }  // namespace heatsoak::cli

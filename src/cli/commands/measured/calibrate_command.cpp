@@ -33,8 +33,9 @@ base::ExitCode run(const CalibrateOptions& options, Session& session) {
   job.written = options.writes_forecast      ? calibration::WrittenFit::forecast
                 : options.writes_innovations ? calibration::WrittenFit::innovations
                                              : calibration::WrittenFit::best;
+  require_read(job.logs, session);
   const calibration::CalibrationAnswer answer =
-      with_progress([&](const base::JobProgress& progress) { return calibration::run_calibration(job, progress); });
+      with_progress(session, [&](const base::JobProgress& progress) { return calibration::run_calibration(job, progress); });
   session.write(options.out, motor::to_toml(answer.motor));
   present::Document document = present::calibration_document(job.motor, answer, job.logs.readings, options.out);
   if (session.draws(options.plot)) {

@@ -49,8 +49,9 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   }
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
                                     recording::read_usable_logs(options.train, options.holdout, choice_of(options.logs, session))};
+  require_read(job.logs, session);
   const diagnosis::DiagnosisAnswer answer =
-      with_progress([&](const base::JobProgress& progress) { return diagnosis::run_diagnosis(job, progress); });
+      with_progress(session, [&](const base::JobProgress& progress) { return diagnosis::run_diagnosis(job, progress); });
   const std::vector<recording::LogReading>& readings = job.logs.readings;
   const present::Document document = present::diagnosis_document(answer, readings);
   if (!options.out.empty()) {

@@ -66,8 +66,9 @@ base::ExitCode run(const FrictionOptions& options, Session& session) {
     throw base::Failure(base::ExitCode::bad_input, "--lifted applies to roll-outs only; expected --method roll_out with it");
   }
   const friction::FrictionJob job = job_of(options, session.folders());
+  session.require_readable(options.logs);
   const friction::FrictionAnswer answer =
-      with_progress("reading", 2.0, [&](const base::Progress& progress) { return friction::run_friction(job, progress); });
+      with_progress(session, "reading", 2.0, [&](const base::Progress& progress) { return friction::run_friction(job, progress); });
   present::Document document = present::friction_document(job, answer);
   if (!options.out.empty()) {
     session.write(options.out, friction::robot_text(answer));

@@ -23,6 +23,8 @@ struct PredictOptions {
 base::ExitCode run(const PredictOptions& options, Session& session) {
   const calibration::PredictionJob job{duty::motor_named(session.folders(), options.model),
                                        recording::read_usable_logs({}, options.logs, choice_of(options.how, session))};
+  require_read(job.logs, session);
+  session.begin_computation();
   const calibration::PredictionAnswer answer = calibration::run_prediction(job);
   present::Document document = present::prediction_document(job.motor, answer, job.logs.readings);
   if (session.draws(options.plot)) {
