@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/number_ranges.h"
 #include "base/unit_names.h"
 #include "check/not_evaluated.h"
 
@@ -49,7 +50,9 @@ std::vector<Child> children_of(const Json& group) {
   std::vector<Child> all;
   if (group.is_object()) {
     for (const auto& [key, value] : group.items()) {
-      all.push_back({key, &value});
+      if (key != base::kNumberRanges) {
+        all.push_back({key, &value});
+      }
     }
   } else if (group.is_array()) {
     for (std::size_t i = 0; i < group.size(); ++i) {
@@ -139,6 +142,25 @@ std::optional<AnswerInterval> interval_of(const Json& group, std::string_view ke
   return std::nullopt;
 }
 
+/// Returns the range that the innermost declaration of a key on the trail gives.
+base::Range possible_at(const Trail& trail, bool is_whole) {
+  for (std::size_t i = trail.groups.size(); i-- > 0;) {
+    const Json& group = *trail.groups[i];
+    const auto declared = group.is_object() ? group.find(base::kNumberRanges) : group.end();
+    if (declared == group.end()) {
+      continue;
+    }
+    for (std::size_t k = trail.keys.size(); k-- > i;) {
+      if (const auto range = declared->find(trail.keys[k]); range != declared->end()) {
+        constexpr double kNone = std::numeric_limits<double>::infinity();
+        const auto end = [&](std::size_t place, double none) { return (*range)[place].is_number() ? (*range)[place].get<double>() : none; };
+        return base::Range::between(end(0, -kNone), end(1, kNone));
+      }
+    }
+  }
+  return is_whole ? base::Range::non_negative() : base::Range::any();
+}
+
 bool is_never(const Json& group, const std::string& key) {
   const auto keys = group.is_object() ? group.find(kNever) : group.end();
   return keys != group.end() && std::ranges::find(*keys, Json(key)) != keys->end();
@@ -150,7 +172,7 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
     throw NotEvaluated(NumberIsGroup{name, names_of(children_of(value))});
   }
   if (value.is_null() && is_never(*trail.groups.back(), trail.keys.back())) {
-    return {.name = name, .value = std::numeric_limits<double>::infinity(), .unit = unit_at(trail)};
+    return {.name = name, .value = std::numeric_limits<double>::infinity(), .unit = unit_at(trail), .possible = possible_at(trail, false)};
   }
   if (value.is_null()) {
     throw NotEvaluated(NumberIsNull{name});
@@ -158,7 +180,13 @@ AnswerNumber number_of(const Trail& trail, const Json& value) {
   if (!value.is_number()) {
     throw NotEvaluated(NumberIsOther{name, value.dump(-1, ' ', false, Json::error_handler_t::replace)});
   }
-  return {name, value.get<double>(), unit_at(trail), value.is_number_integer(), interval_of(*trail.groups.back(), trail.keys.back())};
+  const bool is_whole = value.is_number_integer();
+  return {.name = name,
+          .value = value.get<double>(),
+          .unit = unit_at(trail),
+          .is_whole = is_whole,
+          .interval = interval_of(*trail.groups.back(), trail.keys.back()),
+          .possible = possible_at(trail, is_whole)};
 }
 
 class Search {

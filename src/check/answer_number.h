@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/parameter.h"
 #include "check/basis.h"
 
 namespace heatsoak::check {
@@ -17,6 +18,7 @@ struct AnswerNumber {
   std::string unit;                             ///< UDUNITS text; "" is a pure number
   bool is_whole = false;                        ///< an integer of the answer: a count or an index, which is no share
   std::optional<AnswerInterval> interval = {};  ///< 95 % interval that the answer gives beside the number
+  base::Range possible = {};                    ///< declared by the answer (base/number_ranges.h); an integer is never negative
 };
 
 /// Returns the numbers at a place: keys joined by ".". An element of a list is named by the value of its first key, its id, name or index,

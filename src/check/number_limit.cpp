@@ -49,20 +49,6 @@ double worse_end(const AnswerNumber& number, Bound direction) {
 /// Returns the last key of the number's place.
 std::string_view key_of(const AnswerNumber& number) { return std::string_view(number.name).substr(number.name.rfind('.') + 1); }
 
-/// Returns the range that numbers of this name, unit and kind have in every answer.
-base::Range possible_range(const AnswerNumber& number) {
-  const auto has = [&number](std::string_view part) { return number.name.find(part) != std::string::npos; };
-  const bool is_pure = number.unit.empty() && !number.is_whole;
-  if (is_pure && (has("probability") || has("share") || has("coverage")) && number.value >= 0.0 && number.value <= 1.0) {
-    return base::Range::between(0.0, 1.0);
-  }
-  const std::string_view key = key_of(number);
-  const bool is_size = key.find("rms") != std::string_view::npos || key.find("max_abs") != std::string_view::npos ||
-                       key.find("distance") != std::string_view::npos;
-  const bool is_duration = number.unit == "s" && !has("offset");
-  return number.value >= 0.0 && (number.is_whole || is_size || is_duration) ? base::Range::non_negative() : base::Range();
-}
-
 /// Narrows the limit to what --update may write: a limit at the end of the possible range cannot fail.
 void set_possible(Limit& limit, const base::Range& possible) {
   const auto own = std::make_shared<NumberType>(*limit.own);
@@ -159,8 +145,8 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   limit.value = parsed.value;
   // Only now: a limit that cannot fail, or a fraction as the limit of a count, is permitted, but --update writes none.
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share, worst.is_whole);
-  if (const base::Range possible = possible_range(worst); std::isfinite(possible.low)) {
-    set_possible(limit, possible);
+  if (std::isfinite(worst.possible.low) || std::isfinite(worst.possible.high)) {
+    set_possible(limit, worst.possible);
   }
   const double value = worse_end(worst, direction);
   if (worst.interval && !std::isfinite(value)) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "base/number_ranges.h"
 #include "derate/export_text.h"
 #include "derate/power_off.h"
 #include "derate/rate_lines.h"
@@ -235,34 +236,48 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
       signals.push_back({{"name", observed::signals()[i].name}, {"meaning", observed::signals()[i].meaning}});
     }
   }
-  return {{"schema", "heatsoak.derating/2"},
-          {"program", derating.provenance.program_version},
-          {"input_hash", {{"name", kInputHash}, {"value", derating.provenance.input_hash}}},
-          {"motor", derating.motor_id},
-          {"robot", derating.robot_id},
-          {"data_quality", derating.data_quality},
-          {"seed", derating.options.guarantee.seed},
-          {"winding_limit_C", derating.rules.limits.winding_C},
-          {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
-          {"hottest_ambient_C", derating.rules.hottest_ambient_C},
-          {"period_s", derating.options.period_s},
-          {"approach_s", derating.rules.approach_s},
-          {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
-          {"current_per_iq", derating.is_brushless ? Json(std::numbers::sqrt3 * std::numbers::pi / 6.0) : Json()},
-          {"limp_current_A", rounded(limp_current_A(derating), 4)},
-          {"conditions", derating.assumed},
-          {"default_spreads", default_spreads(derating)},
-          {"doubtful_values", words_of(derating.doubtful_values)},
-          {"measured_power", derating.measured_power ? Json(motor::name_of(*derating.measured_power)) : Json()},
-          {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
-          {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
-          {"signals", signals},
-          {"effects", effects},
-          {"observer", observer_json(derating)},
-          {"power_off", power_off_json(derating)},
-          {"guarantee", guarantee_json(derating, derating.guarantee)},
-          {"sensor", sensor_json(derating)},
-          {"table", table_json(derating.table)}};
+  Json answer{{"schema", "heatsoak.derating/2"},
+              {"program", derating.provenance.program_version},
+              {"input_hash", {{"name", kInputHash}, {"value", derating.provenance.input_hash}}},
+              {"motor", derating.motor_id},
+              {"robot", derating.robot_id},
+              {"data_quality", derating.data_quality},
+              {"seed", derating.options.guarantee.seed},
+              {"winding_limit_C", derating.rules.limits.winding_C},
+              {"stator_limit_C", derating.rules.limits.stator_C ? Json(*derating.rules.limits.stator_C) : Json()},
+              {"hottest_ambient_C", derating.rules.hottest_ambient_C},
+              {"period_s", derating.options.period_s},
+              {"approach_s", derating.rules.approach_s},
+              {"heat_reserve_ratio", rounded(derating.observer.heat_safety_factor(), 4)},
+              {"current_per_iq", derating.is_brushless ? Json(std::numbers::sqrt3 * std::numbers::pi / 6.0) : Json()},
+              {"limp_current_A", rounded(limp_current_A(derating), 4)},
+              {"conditions", derating.assumed},
+              {"default_spreads", default_spreads(derating)},
+              {"doubtful_values", words_of(derating.doubtful_values)},
+              {"measured_power", derating.measured_power ? Json(motor::name_of(*derating.measured_power)) : Json()},
+              {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
+              {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
+              {"signals", signals},
+              {"effects", effects},
+              {"observer", observer_json(derating)},
+              {"power_off", power_off_json(derating)},
+              {"guarantee", guarantee_json(derating, derating.guarantee)},
+              {"sensor", sensor_json(derating)},
+              {"table", table_json(derating.table)}};
+  return base::with_ranges(std::move(answer), {{"period_s", base::kNotNegative},
+                                               {"approach_s", base::kNotNegative},
+                                               {"limp_current_A", base::kNotNegative},
+                                               {"unmodelled_heat_share", base::kShare},
+                                               {"off_s", base::kNotNegative},
+                                               {"allowed_after_s", base::kNotNegative},
+                                               {"allowed_A", base::kNotNegative},
+                                               {"confidence", base::kShare},
+                                               {"certainty", base::kShare},
+                                               {"least_kept_share", base::kShare},
+                                               {"over_share_ci95", base::kShare},
+                                               {"accuracy_K", base::kNotNegative},
+                                               {"lag_s", base::kNotNegative},
+                                               {"shortfall_ratio", base::kShare}});
 }
 
 }  // namespace heatsoak::derate

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/closed_loop.h"
 
 namespace heatsoak::present {
@@ -33,7 +34,14 @@ Json closed_loop_json(const simulate::ClosedLoopRank& rank, std::uint64_t seed) 
   answer["guard_limited_s"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_limited_s), 3) : Json();
   answer["guard_winding_peak_C"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_winding_peak_C), 2) : Json();
   answer["why_no_guard"] = drives.why_no_guard ? Json(drives.why_no_guard->message()) : Json();
-  return answer;
+  return base::with_ranges(std::move(answer), {{"current_rms_A", base::kNotNegative},
+                                               {"distance_m", base::kNotNegative},
+                                               {"tracking_rms_m", base::kNotNegative},
+                                               {"tracking_most_m", base::kNotNegative},
+                                               {"slip_m", base::kNotNegative},
+                                               {"lowest_battery_V", base::kNotNegative},
+                                               {"battery_empty_s", base::kNotNegative},
+                                               {"guard_limited_s", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

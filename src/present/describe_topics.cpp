@@ -64,10 +64,10 @@ Document command_limits_description() {
           "counts.",
           "The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number with a 95 % "
           "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit. "
-          "Exception: a null whose key is in the list \"never\" beside it is a time that never comes, longer than every limit. The command "
-          "runs in the folder of the check file and writes no file. Mistakes in its options, ids and files are reported together with "
-          "those "
-          "of the check file, before anything is computed."}};
+          "Exception: a null whose key is in the list \"never\" beside it is a time that never comes, longer than every limit.",
+          "The command runs in the folder of the check file and writes no file. Mistakes in its options, ids and files are reported with "
+          "those of the check file, before anything is computed. The key \"ranges\" of an answer gives the lowest and highest possible "
+          "value of numbers by their names; --update writes no limit that cannot fail."}};
   document.listings.push_back({"in a check file:",
                                "[[check]]\n"
                                "name = \"purpose of this check\"\n"

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/duty.h"
 #include "present/game_words.h"
 #include "present/match_roles_json.h"
@@ -50,7 +51,15 @@ Json json_of(const duty::DutyAnswer& answer, const duty::GameDemand& game) {
 }  // namespace
 
 Json duty_json(const duty::DutyAnswer& answer) {
-  return std::visit([&](const auto& content) { return json_of(answer, content); }, answer.content);
+  return base::with_ranges(std::visit([&](const auto& content) { return json_of(answer, content); }, answer.content),
+                           {{"duration_s", base::kNotNegative},
+                            {"play_s", base::kNotNegative},
+                            {"distance_m", base::kNotNegative},
+                            {"time_s", base::kNotNegative},
+                            {"duel_s", base::kNotNegative},
+                            {"slip_s", base::kNotNegative},
+                            {"torque_squared_Nm2_s", base::kNotNegative},
+                            {"duel_torque_squared_Nm2_s", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/number_ranges.h"
 #include "present/closed_loop_json.h"
 #include "present/default_spreads_json.h"
 #include "present/evaluation.h"
@@ -115,7 +116,19 @@ Json evaluation_json(const simulate::EvaluationAnswer& answer) {
       result["motors"].back()["closed_loop"] = closed_loop_json(answer.ranks[i], answer.seed);
     }
   }
-  return result;
+  return base::with_ranges(std::move(result), {{"probability_over_limit", base::kShare},
+                                               {"short_probability", base::kShare},
+                                               {"short_probability_ci95", base::kShare},
+                                               {"probability_ci95", base::kShare},
+                                               {"delivered_share", base::kShare},
+                                               {"short_time_share", base::kShare},
+                                               {"time_to_limit_s", base::kNotNegative},
+                                               {"current_rms_A", base::kNotNegative},
+                                               {"voltage_needed_V", base::kNotNegative},
+                                               {"standard_error_K", base::kNotNegative},
+                                               {"rest_half_s", base::kNotNegative},
+                                               {"rest_all_s", base::kNotNegative},
+                                               {"longest_rest_s", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

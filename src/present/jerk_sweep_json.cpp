@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/jerk_sweep.h"
 
 namespace heatsoak::present {
@@ -26,11 +27,18 @@ Json cases_json(const std::vector<simulate::StudyResult>& results) {
 }  // namespace
 
 Json jerk_sweep_json(const simulate::JerkSweep& sweep) {
-  return {{"schema", "heatsoak.jerk_sweep/1"},
-          {"motor", sweep.motor.id},
-          {"robot", sweep.robot.id},
-          {"grip_m_per_s2", rounded(simulate::grip_m_per_s2(sweep.robot), 4)},
-          {"cases", cases_json(sweep.results)}};
+  Json answer{{"schema", "heatsoak.jerk_sweep/1"},
+              {"motor", sweep.motor.id},
+              {"robot", sweep.robot.id},
+              {"grip_m_per_s2", rounded(simulate::grip_m_per_s2(sweep.robot), 4)},
+              {"cases", cases_json(sweep.results)}};
+  return base::with_ranges(std::move(answer), {{"planned_s", base::kNotNegative},
+                                               {"settled_s", base::kNotNegative},
+                                               {"slip_m_per_m", base::kNotNegative},
+                                               {"sliding_m_per_m", base::kNotNegative},
+                                               {"tracking_rms_m", base::kNotNegative},
+                                               {"peak_current_A", base::kNotNegative},
+                                               {"copper_J", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/number_ranges.h"
 #include "present/default_spreads_json.h"
 #include "present/match.h"
 #include "simulate/reason_name.h"
@@ -39,34 +40,43 @@ Json json(const simulate::DrivenMatch& driven) {
                       {"time_s", rounded(driven.run.phases[i].time_s, 3)},
                       {"copper_J", rounded(driven.run.phases[i].copper_J, 3)}});
   }
-  return {{"planner", duty::to_string(driven.planner)},
-          {"verdict", select::to_string(driven.verdict)},
-          {"distance_m", rounded(s.distance_m, 2)},
-          {"slip_m", rounded(s.slip_m, 4)},
-          {"sliding_m", rounded(s.sliding_m, 4)},
-          {"sliding_s", rounded(s.sliding_s, 3)},
-          {"lifted_s", rounded(s.lifted_s, 3)},
-          {"tracking_rms_m", rounded(s.tracking_rms_m, 6)},
-          {"tracking_most_m", rounded(s.tracking_most_m, 5)},
-          {"arrivals", s.arrivals_count},
-          {"overshoot_mean_m", rounded(s.overshoot_mean_m, 6)},
-          {"overshoot_most_m", rounded(s.overshoot_most_m, 5)},
-          {"peak_current_A", rounded(s.peak_current_A, 3)},
-          {"current_rms_A", rounded(s.current_rms_A, 4)},
-          {"short_s", rounded(s.short_s, 3)},
-          {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
-          {"battery_empty_s", rounded(s.battery_empty_s, 3)},
-          {"winding_peak_C", rounded(s.winding_peak_C, 3)},
-          {"stator_peak_C", rounded(s.stator_peak_C, 3)},
-          {"duel_copper_share", rounded(s.duel_copper_share, 4)},
-          {"guard_limited_s", rounded(s.guard_limited_s, 3)},
-          {"guard_missing_A_s", rounded(s.guard_missing_A_s, 3)},
-          {"guard_winding_peak_C", rounded(s.guard_winding_peak_C, 3)},
-          {"limited_s", limited},
-          {"fault_s", rounded(s.fault_s, 3)},
-          {"lost_packets_share", rounded(s.lost_packets_share, 5)},
-          {"energy", energy},
-          {"phases", phases}};
+  Json result{{"planner", duty::to_string(driven.planner)},
+              {"verdict", select::to_string(driven.verdict)},
+              {"distance_m", rounded(s.distance_m, 2)},
+              {"slip_m", rounded(s.slip_m, 4)},
+              {"sliding_m", rounded(s.sliding_m, 4)},
+              {"sliding_s", rounded(s.sliding_s, 3)},
+              {"lifted_s", rounded(s.lifted_s, 3)},
+              {"tracking_rms_m", rounded(s.tracking_rms_m, 6)},
+              {"tracking_most_m", rounded(s.tracking_most_m, 5)},
+              {"arrivals", s.arrivals_count},
+              {"overshoot_mean_m", rounded(s.overshoot_mean_m, 6)},
+              {"overshoot_most_m", rounded(s.overshoot_most_m, 5)},
+              {"peak_current_A", rounded(s.peak_current_A, 3)},
+              {"current_rms_A", rounded(s.current_rms_A, 4)},
+              {"short_s", rounded(s.short_s, 3)},
+              {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
+              {"battery_empty_s", rounded(s.battery_empty_s, 3)},
+              {"winding_peak_C", rounded(s.winding_peak_C, 3)},
+              {"stator_peak_C", rounded(s.stator_peak_C, 3)},
+              {"duel_copper_share", rounded(s.duel_copper_share, 4)},
+              {"guard_limited_s", rounded(s.guard_limited_s, 3)},
+              {"guard_missing_A_s", rounded(s.guard_missing_A_s, 3)},
+              {"guard_winding_peak_C", rounded(s.guard_winding_peak_C, 3)},
+              {"limited_s", limited},
+              {"fault_s", rounded(s.fault_s, 3)},
+              {"lost_packets_share", rounded(s.lost_packets_share, 5)},
+              {"energy", energy},
+              {"phases", phases}};
+  return base::with_ranges(
+      std::move(result),
+      {{"distance_m", base::kNotNegative},        {"slip_m", base::kNotNegative},      {"sliding_m", base::kNotNegative},
+       {"sliding_s", base::kNotNegative},         {"lifted_s", base::kNotNegative},    {"tracking_rms_m", base::kNotNegative},
+       {"tracking_most_m", base::kNotNegative},   {"arrivals", base::kNotNegative},    {"peak_current_A", base::kNotNegative},
+       {"current_rms_A", base::kNotNegative},     {"short_s", base::kNotNegative},     {"lowest_battery_V", base::kNotNegative},
+       {"battery_empty_s", base::kNotNegative},   {"duel_copper_share", base::kShare}, {"guard_limited_s", base::kNotNegative},
+       {"guard_missing_A_s", base::kNotNegative}, {"limited_s", base::kNotNegative},   {"fault_s", base::kNotNegative},
+       {"lost_packets_share", base::kShare},      {"time_s", base::kNotNegative},      {"copper_J", base::kNotNegative}});
 }
 
 Json balance_json(const select::Trace& trace) {
@@ -86,46 +96,48 @@ Json match_json(const simulate::MatchSimulation& match) {
   for (const simulate::DrivenMatch& each : match.runs) {
     planners.push_back(json(each));
   }
-  return {{"schema", "heatsoak.simulate/1"},
-          {"motor", match.motor.id},
-          {"conditions", match.motor.assumed},
-          {"robot", match.robot.id},
-          {"duty", match.duty.id},
-          {"duty_origin", match.duty.origin},
-          {"seed", match.seed},
-          {"planner", duty::to_string(deciding.planner)},
-          {"duration_s", rounded(score.time_s, 3)},
-          {"wheel", fmt::format("wheel {}", score.hottest_wheel + 1)},
-          {"winding_peak_C", rounded(score.winding_peak_C, 3)},
-          {"stator_peak_C", rounded(score.stator_peak_C, 3)},
-          {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
-          {"current_rms_A", rounded(score.current_rms_A, 4)},
-          {"verdict", select::to_string(deciding.verdict)},
-          {"data_quality", motor::data_quality(match.motor)},
-          {"is_friction_assumed", match.robot.friction.is_assumed},
-          {"sensing", match.is_sensing_ideal ? "ideal" : "real"},
-          {"guard", guard_json(match)},
-          {"default_spreads", match.guard_use != simulate::GuardUse::off ? default_spreads_json({&match.motor, 1}) : Json::array()},
-          {"planners", planners}};
+  Json answer{{"schema", "heatsoak.simulate/1"},
+              {"motor", match.motor.id},
+              {"conditions", match.motor.assumed},
+              {"robot", match.robot.id},
+              {"duty", match.duty.id},
+              {"duty_origin", match.duty.origin},
+              {"seed", match.seed},
+              {"planner", duty::to_string(deciding.planner)},
+              {"duration_s", rounded(score.time_s, 3)},
+              {"wheel", fmt::format("wheel {}", score.hottest_wheel + 1)},
+              {"winding_peak_C", rounded(score.winding_peak_C, 3)},
+              {"stator_peak_C", rounded(score.stator_peak_C, 3)},
+              {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
+              {"current_rms_A", rounded(score.current_rms_A, 4)},
+              {"verdict", select::to_string(deciding.verdict)},
+              {"data_quality", motor::data_quality(match.motor)},
+              {"is_friction_assumed", match.robot.friction.is_assumed},
+              {"sensing", match.is_sensing_ideal ? "ideal" : "real"},
+              {"guard", guard_json(match)},
+              {"default_spreads", match.guard_use != simulate::GuardUse::off ? default_spreads_json({&match.motor, 1}) : Json::array()},
+              {"planners", planners}};
+  return base::with_ranges(std::move(answer), {{"duration_s", base::kNotNegative}, {"current_rms_A", base::kNotNegative}});
 }
 
 Json load_simulation_json(const select::LoadSimulation& simulation) {
   const select::MotorEvaluation& result = simulation.result;
-  return {{"schema", "heatsoak.simulate/1"},
-          {"motor", simulation.motor.id},
-          {"conditions", simulation.motor.assumed},
-          {"robot", simulation.robot.id},
-          {"duty", simulation.duty.id},
-          {"duty_origin", simulation.duty.origin},
-          {"wheel", result.wheel},
-          {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
-          {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
-          {"winding_limit_C", rounded(result.winding_limit_C, 2)},
-          {"current_rms_A", rounded(result.current_rms_A, 4)},
-          {"verdict", select::to_string(result.verdict)},
-          {"data_quality", result.data_quality},
-          {"balance", balance_json(simulation.trace)},
-          {"stored_W", rounded(simulation.trace.stored_W, 6)}};
+  Json answer{{"schema", "heatsoak.simulate/1"},
+              {"motor", simulation.motor.id},
+              {"conditions", simulation.motor.assumed},
+              {"robot", simulation.robot.id},
+              {"duty", simulation.duty.id},
+              {"duty_origin", simulation.duty.origin},
+              {"wheel", result.wheel},
+              {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
+              {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
+              {"winding_limit_C", rounded(result.winding_limit_C, 2)},
+              {"current_rms_A", rounded(result.current_rms_A, 4)},
+              {"verdict", select::to_string(result.verdict)},
+              {"data_quality", result.data_quality},
+              {"balance", balance_json(simulation.trace)},
+              {"stored_W", rounded(simulation.trace.stored_W, 6)}};
+  return base::with_ranges(std::move(answer), {{"current_rms_A", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
+
 namespace heatsoak::present {
 
 Json role_json(const duty::RoleLoads& roles) {
@@ -19,11 +21,18 @@ Json role_json(const duty::RoleLoads& roles) {
                         {"heat_share", rounded(duty::effort_Nm2_s(phase) / sum_Nm2_s, 6)},
                         {"duel_heat_share", rounded(phase.duel_torque_squared_Nm2_s / sum_Nm2_s, 6)}});
     }
-    all.push_back({{"role", duty::kRoleNames[r]},
-                   {"distance_m", rounded(load.distance_m, 1)},
-                   {"torque_rms_Nm", rounded(duty::torque_rms_Nm(load), 6)},
-                   {"heat_of_busiest_share", rounded(sum_Nm2_s / most_Nm2_s, 6)},
-                   {"phases", phases}});
+    Json role{{"role", duty::kRoleNames[r]},
+              {"distance_m", rounded(load.distance_m, 1)},
+              {"torque_rms_Nm", rounded(duty::torque_rms_Nm(load), 6)},
+              {"heat_of_busiest_share", rounded(sum_Nm2_s / most_Nm2_s, 6)},
+              {"phases", phases}};
+    all.push_back(base::with_ranges(std::move(role), {{"distance_m", base::kNotNegative},
+                                                      {"torque_rms_Nm", base::kNotNegative},
+                                                      {"heat_of_busiest_share", base::kShare},
+                                                      {"time_s", base::kNotNegative},
+                                                      {"duel_s", base::kNotNegative},
+                                                      {"heat_share", base::kShare},
+                                                      {"duel_heat_share", base::kShare}}));
   }
   return all;
 }

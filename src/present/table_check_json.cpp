@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/derating.h"
 
 namespace heatsoak::present {
@@ -20,16 +21,20 @@ Json table_check_json(const derate::TableCheck& check) {
   for (const derate::HeaderDifference& each : check.found.differing) {
     lines.push_back({{"line", each.line}, {"committed", each.text}, {"fresh", each.other_text}});
   }
-  return {{"file", committed.file.string()},
-          {"motor", text(committed.motor_id)},
-          {"robot", text(committed.robot_id)},
-          {"written_by", text(committed.version)},
-          {"holds", check.found.holds()},
-          {"ignored_share", derate::kIgnored_share},
-          {"excess", json(check.found.excess)},
-          {"lost", json(check.found.lost)},
-          {"differing_line", lines.empty() ? Json() : lines.front()["line"]},
-          {"differing_lines", lines}};
+  Json result{{"file", committed.file.string()},
+              {"motor", text(committed.motor_id)},
+              {"robot", text(committed.robot_id)},
+              {"written_by", text(committed.version)},
+              {"holds", check.found.holds()},
+              {"ignored_share", derate::kIgnored_share},
+              {"excess", json(check.found.excess)},
+              {"lost", json(check.found.lost)},
+              {"differing_line", lines.empty() ? Json() : lines.front()["line"]},
+              {"differing_lines", lines}};
+  return base::with_ranges(std::move(result), {{"difference_A", base::kNotNegative},
+                                               {"committed_A", base::kNotNegative},
+                                               {"fresh_A", base::kNotNegative},
+                                               {"ignored_share", base::kShare}});
 }
 
 }  // namespace heatsoak::present

@@ -33,7 +33,9 @@ const Json kAnswer = Json::parse(R"({
   "heat_W": {"mean": 1.5, "max": 4.0}, "limited_s": {"voltage": 3.0, "guard": 0.0}, "coefficient_per_K": 0.0039,
   "residual_tests": {"before": {"winding_C": {"periodogram_over_band": 1.1, "ljung_box_p": 0.4, "correlated_with": {"current": 0.1}}}},
   "power_balance_W": {"copper_loss": {"winding": 5.0}}, "curve": {"driver": [1.0], "driver_unit": "rad/s", "value": [2.0], "unit": "W"},
-  "rest_of_hot_motor": [{"play": "5min", "rest_half_s": 240.0, "rest_all_s": null, "never": ["rest_all_s"]}], "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0]})");
+  "rest_of_hot_motor": [{"play": "5min", "rest_half_s": 240.0, "rest_all_s": null, "never": ["rest_all_s"]}], "drift_K": {"value": -1.0, "ci95": [-4.8, 0.05]}, "knots": [1.0, 2.0],
+  "balance": {"share": 0.4, "mean_W": {"rotor": 2.0, "drag_share": 0.5, "ranges": {"drag_share": [-1, 1]}}},
+  "ranges": {"probability_over_limit": [0, 1], "coverage_90": [0, 1], "idle_s": [0, null], "limited_s": [0, null], "mean_W": [0, null]}})");
 
 /// Returns why there is no number of that name; a default NumberIsNull if there is one.
 Reason refusal(std::string_view place) {
@@ -106,6 +108,23 @@ TEST(AnswerNumbers, HaveTheUnitOfTheirNameOrOfTheUnitBeside) {
   EXPECT_EQ(unit("curve.value.0"), "W");
   EXPECT_EQ(unit("probability_over_limit"), "");
   EXPECT_EQ(unit("knots.0"), "");
+}
+
+TEST(AnswerNumbers, HaveTheRangeThatTheAnswerDeclares) {
+  const auto possible = [](std::string_view place) {
+    const base::Range range = numbers_at(kAnswer, place).front().possible;
+    return std::pair(range.low, range.high);
+  };
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(possible("probability_over_limit"), std::pair(0.0, 1.0));
+  EXPECT_EQ(possible("coverage_90.winding_C"), std::pair(0.0, 1.0)) << "a group";
+  EXPECT_EQ(possible("limited_s.guard"), std::pair(0.0, kNone));
+  EXPECT_EQ(possible("balance.mean_W.rotor"), std::pair(0.0, kNone)) << "declared further out";
+  EXPECT_EQ(possible("balance.mean_W.drag_share"), std::pair(-1.0, 1.0)) << "the innermost declaration";
+  EXPECT_EQ(possible("over"), std::pair(0.0, kNone)) << "a count";
+  EXPECT_EQ(possible("balance.share"), std::pair(-kNone, kNone)) << "a name is no declaration";
+  EXPECT_EQ(possible("drift_K.value"), std::pair(-kNone, kNone));
+  EXPECT_TRUE(std::holds_alternative<NumberMissing>(refusal("ranges.idle_s.0"))) << "a declaration is no number of the answer";
 }
 
 class CommandChecks : public testing::Test {

@@ -9,6 +9,7 @@
 #include <map>
 #include <regex>
 
+#include "check/answer_number.h"
 #include "program_run.h"
 #include "recording/quantities.h"
 #include "soak_example.h"
@@ -45,7 +46,9 @@ void collect(const ordered_json& value, const std::string& name, std::vector<Nam
     all.push_back({name, value.get<double>()});
   } else if (value.is_object()) {
     for (const auto& [key, each] : value.items()) {
-      collect(each, before + key, all);
+      if (key != "ranges") {
+        collect(each, before + key, all);
+      }
     }
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) {
@@ -141,6 +144,27 @@ TEST_P(EveryNumber, CanHaveALimit) {
     EXPECT_TRUE(has_interval || exact[i].at("passed").get<bool>()) << numbers[i].name << " " << limits[i] << ": " << exact[i].at("reason");
   }
   EXPECT_THAT(folder_.names(), ElementsAre("all.check.toml")) << "a command of a check writes no file";
+}
+
+/// Returns whether a number of this name and unit can never be negative.
+bool is_size(const check::AnswerNumber& number) {
+  const auto has = [&number](std::string_view part) { return number.name.find(part) != std::string::npos; };
+  const bool is_share = number.unit.empty() && (has("probability") || has("share") || has("coverage"));
+  return is_share || number.unit == "s" || has("rms") || has("max_abs") || has("distance");
+}
+
+// Without a declared range, --update may write a limit that cannot fail.
+TEST_P(EveryNumber, LiesInTheRangeThatItsAnswerDeclares) {
+  const ProgramRun done = run_line("heatsoak " + commands().at(GetParam()) + " --json -", in(TemporaryFolder()));
+  const ordered_json answer = ordered_json::parse(done.out);
+  std::vector<NamedNumber> found;
+  collect(answer, "", found);
+  for (const NamedNumber& each : found) {
+    for (const check::AnswerNumber& number : check::numbers_at(answer, each.name)) {
+      EXPECT_TRUE(number.possible.contains(number.value)) << number.name << " " << number.value;
+      EXPECT_TRUE(!is_size(number) || number.possible.low >= 0.0) << number.name << " has no declared range";
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryCommand, EveryNumber, testing::Range(std::size_t{0}, std::size_t{7}),

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/number_ranges.h"
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
@@ -95,7 +96,14 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
                {"worse_than_before", words_of(result.worse)},
                {"model", out}};
   add_notes(json, calibration_notes(answer, readings));
-  return json;
+  return base::with_ranges(std::move(json), {{"rmse_K", base::kNotNegative},
+                                             {"max_abs_K", base::kNotNegative},
+                                             {"latent_flux", base::kNotNegative},
+                                             {"coverage_90", base::kShare},
+                                             {"unknown_heat_winding_share", base::kNotNegative},
+                                             {"unknown_heat_stator_share", base::kNotNegative},
+                                             {"time_scale_s", base::kNotNegative},
+                                             {"rejected_share", base::kShare}});
 }
 
 }  // namespace heatsoak::present

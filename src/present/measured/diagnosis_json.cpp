@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/prediction.h"
@@ -201,7 +202,17 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
         {{"tells", rivals_of(each)}, {"what", experiment_words(each)}, {"expected_nats", rounded(each.expected_nats.value_or(0.0), 1)}});
   }
   add_notes(json, diagnosis_notes(answer, readings));
-  return json;
+  return base::with_ranges(std::move(json), {{"rmse_K", base::kNotNegative},
+                                             {"max_abs_K", base::kNotNegative},
+                                             {"coverage_90", base::kShare},
+                                             {"probability", base::kShare},
+                                             {"p_value", base::kShare},
+                                             {"ljung_box_p", base::kShare},
+                                             {"unknown_heat_winding_share", base::kNotNegative},
+                                             {"unknown_heat_stator_share", base::kNotNegative},
+                                             {"unknown_heat_rms_W", base::kNotNegative},
+                                             {"half_width_K", base::kNotNegative},
+                                             {"time_scale_s", base::kNotNegative}});
 }
 
 }  // namespace heatsoak::present

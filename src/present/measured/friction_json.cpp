@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/measured/friction.h"
 #include "present/measured/friction_words.h"
 
@@ -51,24 +52,30 @@ Json wheels_json(const friction::FrictionFit& fit, const friction::HeldOutError&
 
 Json friction_json(const friction::FrictionJob& job, const friction::SteadyFriction& found, const FrictionRemarks& remarks) {
   const friction::SteadyParts& steady = found.steady;
-  return {{"schema", "heatsoak.friction/1"},
-          {"method", "steady_state"},
-          {"robot", job.robot.id},
-          {"motor", motor_json(job)},
-          {"wheels", wheels_json(found.fit, found.error, steady.rows)},
-          {"before",
-           {{"rmse", number_or_null(found.error.before_V)},
-            {"unit", "V"},
-            {"from", found.expected_from ? words_of(*found.expected_from) : ""}}},
-          {"after", {{"rmse", number_or_null(found.error.after_V)}, {"unit", "V"}}},
-          {"headings", found.fit.headings},
-          {"headings_held_out", found.error.headings},
-          {"rows", steady.rows},
-          {"rows_steady", steady.rows_steady},
-          {"legs", steady.legs},
-          {"return_legs", steady.return_legs},
-          {"findings", remarks.findings},
-          {"suspicions", remarks.suspicions}};
+  Json answer{{"schema", "heatsoak.friction/1"},
+              {"method", "steady_state"},
+              {"robot", job.robot.id},
+              {"motor", motor_json(job)},
+              {"wheels", wheels_json(found.fit, found.error, steady.rows)},
+              {"before",
+               {{"rmse", number_or_null(found.error.before_V)},
+                {"unit", "V"},
+                {"from", found.expected_from ? words_of(*found.expected_from) : ""}}},
+              {"after", {{"rmse", number_or_null(found.error.after_V)}, {"unit", "V"}}},
+              {"headings", found.fit.headings},
+              {"headings_held_out", found.error.headings},
+              {"rows", steady.rows},
+              {"rows_steady", steady.rows_steady},
+              {"legs", steady.legs},
+              {"return_legs", steady.return_legs},
+              {"findings", remarks.findings},
+              {"suspicions", remarks.suspicions}};
+  return base::with_ranges(std::move(answer), {{"rmse", base::kNotNegative},
+                                               {"rmse_V", base::kNotNegative},
+                                               {"left_V", base::kNotNegative},
+                                               {"repeats_V", base::kNotNegative},
+                                               {"before_rmse_V", base::kNotNegative},
+                                               {"after_rmse_V", base::kNotNegative}});
 }
 
 Json friction_json(const friction::FrictionJob& job, const friction::RollOutFriction& found, const FrictionRemarks& remarks) {

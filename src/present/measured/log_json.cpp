@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/measured/log_words.h"
 
 namespace heatsoak::present {
@@ -61,25 +62,29 @@ Json log_json(const recording::InspectedLog& log) {
   for (const recording::Gap& gap : quality.gaps) {
     gaps.push_back({{"line", gap.line}, {"begin_s", gap.begin_s}, {"duration_s", gap.duration_s}});
   }
-  return {{"file", recording.file.string()},
-          {"motor", recording.motor},
-          {"conditions", recording.conditions},
-          {"rows_in_file", report.rows_in_file},
-          {"rows_kept", report.rows_kept},
-          {"sampling",
-           {{"duration_s", quality.sampling.duration_s},
-            {"usual_period_s", quality.sampling.usual_period_s},
-            {"jitter_s", quality.sampling.jitter_s},
-            {"longest_gap_s", quality.sampling.longest_gap_s}}},
-          {"runs", quality.runs},
-          {"gaps", gaps},
-          {"channels", channels_json(quality)},
-          {"left_out", left_out_json(report)},
-          {"clock_offsets", clocks_json(quality)},
-          {"suspicions", words_of(quality.suspicions)},
-          {"notes", words_of(report.notes)},
-          {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", words_of(quality.thermal.lacks)}}},
-          {"drive", {{"good", quality.drive.is_good()}, {"lacks", words_of(quality.drive.lacks)}}}};
+  Json result{{"file", recording.file.string()},
+              {"motor", recording.motor},
+              {"conditions", recording.conditions},
+              {"rows_in_file", report.rows_in_file},
+              {"rows_kept", report.rows_kept},
+              {"sampling",
+               {{"duration_s", quality.sampling.duration_s},
+                {"usual_period_s", quality.sampling.usual_period_s},
+                {"jitter_s", quality.sampling.jitter_s},
+                {"longest_gap_s", quality.sampling.longest_gap_s}}},
+              {"runs", quality.runs},
+              {"gaps", gaps},
+              {"channels", channels_json(quality)},
+              {"left_out", left_out_json(report)},
+              {"clock_offsets", clocks_json(quality)},
+              {"suspicions", words_of(quality.suspicions)},
+              {"notes", words_of(report.notes)},
+              {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", words_of(quality.thermal.lacks)}}},
+              {"drive", {{"good", quality.drive.is_good()}, {"lacks", words_of(quality.drive.lacks)}}}};
+  return base::with_ranges(std::move(result), {{"sampling", base::kNotNegative},
+                                               {"duration_s", base::kNotNegative},
+                                               {"noise", base::kNotNegative},
+                                               {"standard_error_s", base::kNotNegative}});
 }
 
 Json conversion_json(const recording::ConvertedLog& log, const std::string& out) {

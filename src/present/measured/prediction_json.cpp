@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/number_ranges.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
 #include "present/measured/prediction.h"
@@ -39,7 +40,8 @@ Json prediction_json(const motor::Motor& motor, const calibration::PredictionAns
                {"model", motor.file.string()},
                {"runs", runs_json(answer.prediction.runs)}};
   add_notes(json, prediction_notes(answer, readings));
-  return json;
+  return base::with_ranges(std::move(json),
+                           {{"rmse_K", base::kNotNegative}, {"max_abs_K", base::kNotNegative}, {"coverage_90", base::kShare}});
 }
 
 }  // namespace heatsoak::present
