@@ -66,6 +66,9 @@ struct ObserverDiffers {
   std::size_t count = 0;
 };
 
+/// The check names neither files nor a motor, robot or duty.
+struct NothingToLint {};
+
 struct NoLogs {};
 struct NoMeasuredTemperature {};
 
@@ -109,8 +112,8 @@ struct LimitInvalid {
 };
 
 using Reason = std::variant<Failed, ResultNotFinite, OutOfMemory, DemandNotDelivered, TooFewSamples, LimitNeverReached, DutyIsNoMatch,
-                            RotorInertiaMissing, MatchNotDriven, TableOfOtherMotor, SensorOptionsDiffer, ObserverDiffers, NoLogs,
-                            NoMeasuredTemperature, NumberMissing, NumberIsGroup, NumberIsNull, NumberIsOther, NumberIsThreshold,
+                            RotorInertiaMissing, MatchNotDriven, TableOfOtherMotor, SensorOptionsDiffer, ObserverDiffers, NothingToLint,
+                            NoLogs, NoMeasuredTemperature, NumberMissing, NumberIsGroup, NumberIsNull, NumberIsOther, NumberIsThreshold,
                             UnitsDiffer, NumberIsCount, IntervalUnbounded, LimitInvalid>;
 
 /// Thrown where a threshold has no value.

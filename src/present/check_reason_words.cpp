@@ -89,6 +89,10 @@ std::string say(const check::ObserverDiffers& of, const check::Limit& /*limit*/)
       table, of.first.line, base::counted(of.count, "place"), of.first.text, of.first.other_text);
 }
 
+std::string say(const check::NothingToLint& /*of*/, const check::Limit& /*limit*/) {
+  return "the check names nothing to lint; expected files, motor, robot or duty";
+}
+
 std::string say(const check::NoLogs& /*of*/, const check::Limit& /*limit*/) { return "the list of logs is empty"; }
 
 std::string say(const check::NoMeasuredTemperature& /*of*/, const check::Limit& /*limit*/) {

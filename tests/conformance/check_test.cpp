@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <regex>
 #include <unistd.h>
 
+#include <regex>
 #include <set>
 
 #include "program_run.h"
@@ -165,7 +164,8 @@ TEST_F(CheckCommand, MissingMotorFileIsAFailedLimitInEveryReport) {
   EXPECT_EQ(threshold.at("evaluated"), false);
   EXPECT_EQ(threshold.at("line"), 7);
   EXPECT_THAT(threshold.at("reason"), HasSubstr("ours.toml: cannot be read"));
-  EXPECT_THAT(content_of(folder_.path() / "check.xml"), HasSubstr("<error type=\"not_evaluated\" message=\"robot.check.toml:5:9: motor: ours.toml: cannot be read"));
+  EXPECT_THAT(content_of(folder_.path() / "check.xml"),
+              HasSubstr("<error type=\"not_evaluated\" message=\"robot.check.toml:5:9: motor: ours.toml: cannot be read"));
 }
 
 TEST_F(CheckCommand, UpdateRewritesTheLimitsInPlace) {
@@ -278,6 +278,16 @@ TEST(FailOn, ChangesTheExitCodeOnly) {
   EXPECT_EQ(run(fails + Words{"--fail-on", "margnal"}).exit_code, 2);
 }
 
+TEST(FailOn, MarginalNeedsSamples) {
+  const Words nominal{"evaluate",  "--robot", "roboteam_twente_v2024", "--duty", "paper_intermittent", "--motors", "maxon_ecx_flat_42m_24v",
+                      "--samples", "0"};
+  const ProgramRun refused = run(nominal + Words{"--fail-on", "marginal"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("without samples no motor is marginal"));
+  EXPECT_EQ(run(nominal + Words{"--fail-on", "undecided"}).exit_code, 1) << "nominal values decide nothing over tolerances";
+  EXPECT_EQ(run(nominal).exit_code, 0);
+}
+
 TEST(DerateCheck, FindsATableThatNoLongerHolds) {
   const TemporaryFolder folder;
   RunOptions options;
@@ -314,7 +324,8 @@ TEST(DerateCheck, NamesTheLawThatChanged) {
   write(folder.path() / "motor.toml", sheet);
   const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "motor.toml", "--samples", "60"};
   ASSERT_EQ(run(derate + Words{"--out", "guard.h"}, options).exit_code, 0);
-  const std::string changed = std::regex_replace(sheet, std::regex("(\nthermal_resistance_winding_stator = \\{ value = \")[0-9.]+"), "$013.5");
+  const std::string changed =
+      std::regex_replace(sheet, std::regex("(\nthermal_resistance_winding_stator = \\{ value = \")[0-9.]+"), "$013.5");
   ASSERT_NE(changed, sheet);
   write(folder.path() / "motor.toml", changed);
   const ProgramRun found = run(derate + Words{"--check", "guard.h", "--json", "-"}, options);
@@ -325,6 +336,15 @@ TEST(DerateCheck, NamesTheLawThatChanged) {
   EXPECT_EQ(found.json().at("check").at("differing_line"), lines[0].at("line"));
   EXPECT_THAT(found.err, HasSubstr("Differing lines"));
   EXPECT_THAT(run(derate + Words{"--check", "guard.h", "--quiet"}, options).out, HasSubstr("winding_to_stator_W"));
+  // Currents of two observers cannot be compared, neither the excess nor the deficit.
+  write(folder.path() / "a.check.toml",
+        "[[check]]\nname = \"table\"\nrobot = \"roboteam_twente_v2024\"\nmotor = \"motor.toml\"\ntable = \"guard.h\"\n"
+        "derate = { samples = \"60\" }\n[check.limits]\nderating_excess = \"at most 5 A\"\nderating_lost = \"at most 5 A\"\n");
+  const ProgramRun checked = run({"check", "a.check.toml", "--json", "-"}, options);
+  EXPECT_EQ(checked.exit_code, 1) << checked.err;
+  for (const json& each : checked.json().at("thresholds")) {
+    EXPECT_EQ(each.at("evaluated"), false) << each;
+  }
 }
 
 // A header with a sensor cannot be compared with one without it, and this is no unsafe table.

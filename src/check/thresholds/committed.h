@@ -9,6 +9,8 @@
 
 namespace heatsoak::check::thresholds {
 
+/// Throws NotEvaluated if the table is of another motor, or its observer differs from a fresh one: currents of two observers at one
+/// temperature cannot be compared.
 inline derate::TableComparison compared(const Check& check, Computations& computations) {
   // Read first, so that a missing file is reported before the derating, which may take a minute.
   const derate::CommittedTable committed = derate::read_committed_table(check.table);
@@ -18,7 +20,11 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
   if (const std::optional<derate::SensorDifference> difference = derate::sensor_difference(committed, check.derate.sensor)) {
     throw NotEvaluated(SensorOptionsDiffer{check.table, *difference});
   }
-  return derate::compare(committed, computations.derating(check, check.derate));
+  derate::TableComparison found = derate::compare(committed, computations.derating(check, check.derate));
+  if (!found.differing.empty()) {
+    throw NotEvaluated(ObserverDiffers{check.table, found.differing.front(), found.differing.size()});
+  }
+  return found;
 }
 
 /// A table cannot differ by more than the current that the driver permits.

@@ -5,9 +5,6 @@ namespace {
 
 Measured measure_derating_excess(const Check& check, Computations& computations) {
   const derate::TableComparison found = compared(check, computations);
-  if (!found.differing.empty()) {
-    throw NotEvaluated(ObserverDiffers{check.table, found.differing.front(), found.differing.size()});
-  }
   return {found.excess.difference_A, 0.0, ExcessBasis{found.excess, found.lost.difference_A}};
 }
 
@@ -21,8 +18,8 @@ ThresholdType derating_excess() {
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
               "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also "
-              "fails if it is of another motor or its observer differs from a "
-              "fresh one. The default of 400 drawn motors takes up to 3 s per motor; write and check the table with derate = { samples = "
+              "fails if it is of another motor or its observer differs from a fresh one. The default of 400 drawn motors takes up to 3 s "
+              "per motor; write and check the table with derate = { samples = "
               "\"60\" } for half of that. --update leaves 0.05 A if the value is 0, but keeps a limit of 0 A that "
               "holds",
           .example = "at most 0 A",

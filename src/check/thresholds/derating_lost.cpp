@@ -3,20 +3,22 @@
 namespace heatsoak::check::thresholds {
 
 ThresholdType derating_lost() {
-  return {.name = {},
-          .unit = "A",
-          .range = base::Range::between(0.0, 1e3),
-          .meaning =
-              "largest deficit of the current that the committed 'table' allows below that of a fresh `derate` of the same robot, motor "
-              "and options, over all speeds and temperatures: safe, but unused current",
-          .example = "at most 0.5 A",
-          .needs = {Setting::robot, Setting::motor, Setting::table},
-          .takes = {Setting::conditions, Setting::derate},
-          .loosest = largest_difference,
-          .measure = [](const Check& check, Computations& computations) -> Measured {
-            const derate::TablePlace lost = compared(check, computations).lost;
-            return {lost.difference_A, 0.0, LostBasis{lost}};
-          }};
+  return {
+      .name = {},
+      .unit = "A",
+      .range = base::Range::between(0.0, 1e3),
+      .meaning =
+          "largest deficit of the current that the committed 'table' allows below that of a fresh `derate` of the same robot, motor "
+          "and options, over all speeds and temperatures: safe, but unused current. A C header also fails if it is of another motor or its "
+          "observer differs from a fresh one",
+      .example = "at most 0.5 A",
+      .needs = {Setting::robot, Setting::motor, Setting::table},
+      .takes = {Setting::conditions, Setting::derate},
+      .loosest = largest_difference,
+      .measure = [](const Check& check, Computations& computations) -> Measured {
+        const derate::TablePlace lost = compared(check, computations).lost;
+        return {lost.difference_A, 0.0, LostBasis{lost}};
+      }};
 }
 
 }  // namespace heatsoak::check::thresholds

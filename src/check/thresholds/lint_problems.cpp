@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "check/computations.h"
+#include "check/not_evaluated.h"
 #include "duty/file_kind.h"
 #include "motor/lint.h"
 #include "robot/robot_lint.h"
@@ -40,6 +41,9 @@ std::vector<motor::LintFinding> findings_of(const Check& check) {
 }
 
 Measured measure_lint_problems(const Check& check, Computations& /*computations*/) {
+  if (check.files.empty() && !check.motor && !check.robot && !check.duty) {
+    throw NotEvaluated(NothingToLint{});
+  }
   const std::vector<motor::LintFinding> all = findings_of(check);
   const auto count = std::ranges::count_if(all, is_problem);
   const auto first = std::ranges::find_if(all, is_problem);

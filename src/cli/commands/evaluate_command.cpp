@@ -62,6 +62,11 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& se
   if (!options.is_closed_loop && options.guard != EvaluateOptions{}.guard) {
     throw base::Failure(base::ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
+  if (!options.is_closed_loop && options.job.samples == 0 && options.fail_on == "marginal") {
+    throw base::Failure(base::ExitCode::bad_input,
+                        "--fail-on marginal: without samples no motor is marginal; expected --samples of 1 or more, "
+                        "or --fail-on undecided, fail or infeasible");
+  }
   duty::NamedFiles named(folders);
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const std::optional<duty::Duty> duty = named.duty(options.duty);
