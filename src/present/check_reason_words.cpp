@@ -169,12 +169,22 @@ base::Location place_of(const check::Outcome& outcome) {
   return begins_with_place ? failure.diagnostics().front().at : outcome.limit.at;
 }
 
-std::string located_explanation(const check::Outcome& outcome) {
+namespace {
+
+std::string place_words(const check::Outcome& outcome) {
   const base::Location at = place_of(outcome);
-  const std::string place = fmt::format("{}:{}:{}: ", at.file, at.line, at.column);
-  const std::string words = explanation_words(outcome);
-  return words.starts_with(place) ? words : place + words;
+  return fmt::format("{}:{}:{}: ", at.file, at.line, at.column);
 }
+
+}  // namespace
+
+std::string unlocated_explanation(const check::Outcome& outcome) {
+  const std::string place = place_words(outcome);
+  const std::string words = explanation_words(outcome);
+  return words.starts_with(place) ? words.substr(place.size()) : words;
+}
+
+std::string located_explanation(const check::Outcome& outcome) { return place_words(outcome) + unlocated_explanation(outcome); }
 
 std::string words_of(const check::Reason& reason, const check::Limit& limit) {
   return std::visit([&limit](const auto& each) { return say(each, limit); }, reason);

@@ -31,6 +31,8 @@ std::string reason_words(const check::Outcome& outcome);
 std::string explanation_words(const check::Outcome& outcome);
 /// Returns the place to correct: that of the file's problem if it prevents the evaluation, otherwise that of the limit.
 base::Location place_of(const check::Outcome& outcome);
+/// Returns explanation_words() without the place_of() that they may begin with, for a message beside that place.
+std::string unlocated_explanation(const check::Outcome& outcome);
 /// Returns explanation_words() behind "file:line:column: " of place_of(), as compilers write it.
 std::string located_explanation(const check::Outcome& outcome);
 

@@ -66,8 +66,8 @@ std::string annotations(std::span<const check::Outcome> outcomes, const std::fil
   std::string text;
   for (const check::Outcome& each : outcomes) {
     if (!each.passed()) {
-      text +=
-          annotation(place_of(each), workspace, fmt::format("{}: {}", each.check->name, each.limit.type->name), explanation_words(each));
+      text += annotation(place_of(each), workspace, fmt::format("{}: {}", each.check->name, each.limit.type->name),
+                         unlocated_explanation(each));
     }
   }
   return text;

@@ -111,8 +111,10 @@ TEST(CheckWords, name_one_place_which_is_that_of_the_problem) {
   failed.reason = check::Failed{base::Failure(base::ExitCode::bad_input, "", {{{"checks.toml", 4, 9}, "motor", "a.toml: cannot be read"}})};
   EXPECT_EQ(place_of(failed).line, 4);
   EXPECT_EQ(located_explanation(failed), "checks.toml:4:9: motor: a.toml: cannot be read");
+  EXPECT_EQ(unlocated_explanation(failed), "motor: a.toml: cannot be read");
   failed.reason = check::ResultNotFinite{};
   EXPECT_EQ(located_explanation(failed), "checks.toml:8:3: the result is not a number");
+  EXPECT_EQ(unlocated_explanation(failed), "the result is not a number");
 }
 
 TEST(CheckWords, name_how_the_sensor_of_a_header_differs) {

@@ -32,8 +32,8 @@ std::string toned(const std::string& text, Tone tone, bool with_colors) {
 
 std::string head_of(const Column& column) { return column.unit.empty() ? column.name : fmt::format("{} {}", column.name, column.unit); }
 
-/// Prose that would get fewer characters beside the other columns goes below its row.
-constexpr std::size_t kLeastProse = 28;
+/// Prose of several lines goes below its row if the other columns leave a smaller share of the width.
+constexpr double kLeastProse_share = 0.5;
 constexpr std::size_t kProseIndent = 4;
 
 /// Returns the width of the widest cell of each column; 0 for prose, which takes the remaining width.
@@ -140,13 +140,15 @@ std::size_t longest_word(std::string_view text) {
   return longest;
 }
 
-/// Adds prose to the line of its row, or below it if the remaining width is too small.
+/// Adds prose to the line of its row, or below it if it would become a narrow column of several lines.
 std::string with_prose(const std::string& line, std::size_t used, const std::string& prose, std::size_t width) {
   if (prose.empty()) {
     return without_trailing_blanks(line);
   }
   const std::size_t place = used + (used > 0 ? kGap : 0);
-  if (place == 0 || place + std::max(std::min(kLeastProse, width_of(prose)), longest_word(prose)) <= width) {
+  const std::size_t left = width - std::min(place, width);
+  const bool is_wide = static_cast<double>(left) >= kLeastProse_share * static_cast<double>(width) && longest_word(prose) <= left;
+  if (place == 0 || is_wide || width_of(prose) <= left) {
     const std::string beside = wrapped(prose, std::string(place, ' '), width);
     return line + beside.substr(used) + "\n";
   }
