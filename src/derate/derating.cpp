@@ -127,15 +127,6 @@ void require_samples(const GuaranteeOptions& options) {
   }
 }
 
-/// Returns the largest number of drawn motors over a limit with which the lower bound on all motors reaches the confidence.
-int most_over(const GuaranteeOptions& goal) {
-  int most = -1;
-  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.required_share) {
-    ++most;
-  }
-  return most;
-}
-
 /// One safety factor on heat and the guard that follows from it.
 struct Attempt {
   double safety_factor;
@@ -176,9 +167,10 @@ class Search {
     std::vector<UsePlayed> uses;
     Guarantee guarantee;
   };
-  /// Returns the smallest safety factor, at least `from`, at which the lower bound on independently drawn motors reaches the confidence.
-  /// All attempts use the same motors. A motor that keeps its limits also keeps them at a larger factor. The result is therefore an order
-  /// statistic of the factors that the motors need, and its confidence level is that of a single check (Wilks 1941).
+  /// Returns the smallest safety factor of its grid, at least `from`, at which at most most_over() independently drawn motors exceed a
+  /// limit. All attempts use the same motors. A motor that keeps its limits also keeps them at a larger factor. The result is therefore at
+  /// least an order statistic of the factors that the motors need, which shows the required share (Wilks 1941). It shows no larger share,
+  /// even if fewer motors are over.
   Promise promise(double from) {
     constexpr double kGrowth = 1.05;
     const GuaranteeOptions& goal = options_.guarantee;
@@ -192,7 +184,7 @@ class Search {
       const std::size_t per_block = base::kLanes * uses.size();
       const Guarantee guarantee =
           check(motor_, reachable_.limits, uses, goal, kStreamsApart, [&](std::size_t, std::size_t) { work_.add(per_block); });
-      if (guarantee.least_kept_share >= goal.required_share) {
+      if (guarantee.over <= most_over(goal)) {
         return {std::move(last.observer), last.rules, std::move(last.table), std::move(uses), guarantee};
       }
       // The full check may find another motor over its limit, by the rounding of MotorVerdicts.

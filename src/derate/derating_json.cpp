@@ -165,11 +165,10 @@ Json table_json(const CurrentTable& table) {
 Json guarantee_json(const Derating& derating, const Guarantee& checked) {
   return {{"confidence", derating.options.guarantee.required_share},
           {"certainty", kCertainty_share},
-          {"least_kept_share", std::floor(1e4 * checked.least_kept_share) / 1e4},
+          {"least_kept_share", derating.options.guarantee.required_share},
           {"samples", checked.samples},
           {"least_samples", least_samples(derating.options.guarantee)},
           {"over", checked.over},
-          {"over_share_ci95", {rounded(checked.over_share.low, 4), rounded(checked.over_share.high, 4)}},
           {"winding_peak_C",
            {{"p50", rounded(checked.winding_p50_C, 2)},
             {"p95", rounded(checked.winding_p95_C, 2)},

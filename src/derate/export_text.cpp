@@ -22,6 +22,41 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
+/// Lists the effects for which `is_listed(effect)` holds, such as "chassis (third_node)".
+template <class IsListed>
+std::string listed(const Derating& derating, const IsListed& is_listed) {
+  std::string text;
+  for (const ActingEffect& effect : derating.effects) {
+    if (is_listed(effect)) {
+      text += fmt::format("{}{}", text.empty() ? "" : ", ",
+                          effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
+    }
+  }
+  return text;
+}
+
+/// Returns the types of the effects whose laws depend on a signal.
+std::set<std::string> types_that_use(const Observer& observer, std::size_t signal) {
+  const thermal::Formula& formula = observer.formula();
+  const std::vector<char> needed = formula.needed_for(observer.rate_steps());
+  std::vector<char> depends(needed.size(), 0);
+  std::set<std::string> types;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const thermal::Formula::Step& step = formula.steps()[i];
+    if (step.operation == thermal::Operation::constant) {
+      continue;
+    }
+    const bool is_input = step.operation == thermal::Operation::input;
+    depends[i] =
+        is_input ? static_cast<std::size_t>(step.left) == signal
+                 : depends[static_cast<std::size_t>(step.left)] != 0 || (step.right && depends[static_cast<std::size_t>(*step.right)] != 0);
+    if (!is_input && needed[i] != 0 && depends[i] != 0) {
+      types.emplace(formula.law_of(static_cast<int>(i)));
+    }
+  }
+  return types;
+}
+
 }  // namespace
 
 std::string identifier(std::string_view id) {
@@ -32,12 +67,18 @@ std::string identifier(std::string_view id) {
   return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
 }
 
+std::string promised_share_text(const Derating& derating) {
+  return fmt::format("with {:.0f} % certainty at least {:.6g} % of the motors within their tolerances", 100.0 * kCertainty_share,
+                     100.0 * derating.options.guarantee.required_share);
+}
+
+std::string drawn_motors_text(const Guarantee& checked) {
+  return fmt::format("{} of the {} drawn motors, which determined the safety factor, exceeded a limit", checked.over, checked.samples);
+}
+
 std::string confidence_text(const Derating& derating, const Guarantee& checked) {
-  return fmt::format(
-      "Confidence {:.6g}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep every limit in the {} "
-      "hardest uses; {} of {} drawn motors exceeded one.",
-      derating.options.guarantee.required_share, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
-      derating.uses.size(), checked.over, checked.samples);
+  return fmt::format("Confidence {:.6g}: {} keep every limit in the {} hardest uses; {}.", derating.options.guarantee.required_share,
+                     promised_share_text(derating), derating.uses.size(), drawn_motors_text(checked));
 }
 
 std::vector<std::string> value_warnings(const Derating& derating) {
@@ -110,14 +151,15 @@ unsigned guard_signature(const Derating& derating, std::string_view form) {
 }
 
 std::string own_effects_text(const Derating& derating) {
-  std::string text;
-  for (const ActingEffect& effect : derating.effects) {
-    if (std::ranges::find(motor::kDatasheetEffects, effect.name) == motor::kDatasheetEffects.end()) {
-      text += fmt::format("{}{}", text.empty() ? "" : ", ",
-                          effect.name == effect.type ? effect.name : fmt::format("{} ({})", effect.name, effect.type));
-    }
-  }
+  const std::string text = listed(derating, [](const ActingEffect& effect) {
+    return std::ranges::find(motor::kDatasheetEffects, effect.name) == motor::kDatasheetEffects.end();
+  });
   return text.empty() ? "no additional effects" : text;
+}
+
+std::string effects_text(const Derating& derating, const std::set<std::string>& types) {
+  const std::string text = listed(derating, [&](const ActingEffect& effect) { return types.contains(effect.type); });
+  return text.empty() ? own_effects_text(derating) : text;
 }
 
 void require_finite(const Derating& derating) {
@@ -157,10 +199,10 @@ void require_three_signals(std::string_view controller, const Derating& derating
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     const bool is_searched = observed::signals()[i].worst == thermal::WorstCase::searched;
     if (is_searched && derating.observer.uses(static_cast<observed::Signal>(i))) {
-      throw base::Failure(base::ExitCode::bad_input,
-                          fmt::format("{} cannot express the effects {}: one of them depends on {}, which the controller does "
-                                      "not know; use --to c_header",
-                                      controller, own_effects_text(derating), observed::signals()[i].name));
+      throw base::Failure(
+          base::ExitCode::bad_input,
+          fmt::format("{} cannot express {}: the law depends on {}, which the controller does not know; use --to c_header", controller,
+                      effects_text(derating, types_that_use(derating.observer, i)), observed::signals()[i].name));
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <numbers>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,14 @@ inline constexpr double kDcPerIq_ratio = std::numbers::sqrt3 * std::numbers::pi 
 /// Returns program, inputs, limits, confidence, conditions and default tolerances as lines that begin with `comment`. Control characters in
 /// a user's text become spaces, so that it cannot end the comment.
 std::string provenance_lines(const Derating& derating, std::string_view comment);
+
+/// Returns the promise that the safety factor was selected for: "with 95 % certainty at least 95 % of the motors within their tolerances".
+/// The drawn motors show no larger share, because they also selected the factor.
+std::string promised_share_text(const Derating& derating);
+
+/// Returns the count of the drawn motors over a limit: "7 of the 400 drawn motors, which determined the
+/// safety factor, exceeded a limit".
+std::string drawn_motors_text(const Guarantee& checked);
 
 /// Returns the meaning of the confidence and the result of its check as one line: without a sensor `checked` is Derating::guarantee, with
 /// one SensorPlan::guarantee.
@@ -39,6 +48,9 @@ std::string ramp_lines(const Derating& derating, RampSignal signal, const Curren
 
 /// Lists the effects that the motor has beyond the data sheet's, such as "chassis (third_node)"; "no additional effects" if there are none.
 std::string own_effects_text(const Derating& derating);
+
+/// Lists the motor's effects of these types; all additional effects if it has none of them.
+std::string effects_text(const Derating& derating, const std::set<std::string>& types);
 
 /// Throws Failure (bad_input) if a value that is exported is not finite.
 void require_finite(const Derating& derating);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 #include "base/binomial_bound.h"
 #include "motor/datasheet_network.h"
@@ -183,17 +184,19 @@ Guarantee check(const motor::Motor& motor, const TemperatureLimits& limits, std:
   return guarantee(all);
 }
 
+int most_over(const GuaranteeOptions& goal) {
+  int most = -1;
+  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.required_share) {
+    ++most;
+  }
+  return most;
+}
+
 Guarantee guarantee(std::span<const MotorPeak> peaks) {
   std::vector<double> winding_C;
-  std::vector<char> is_over;
-  for (const MotorPeak& each : peaks) {
-    winding_C.push_back(each.winding_C);
-    is_over.push_back(each.is_over ? 1 : 0);
-  }
+  std::ranges::transform(peaks, std::back_inserter(winding_C), &MotorPeak::winding_C);
   Guarantee result{.samples = static_cast<int>(peaks.size()),
-                   .over = static_cast<int>(std::ranges::count(is_over, char{1})),
-                   .over_share = select::sample_intervals(winding_C, is_over).probability};
-  result.least_kept_share = 1.0 - base::upper_bound_share(result.over, result.samples, kCertainty_share);
+                   .over = static_cast<int>(std::ranges::count_if(peaks, [](const MotorPeak& each) { return each.is_over; }))};
   std::ranges::sort(winding_C);
   result.winding_p50_C = select::quantile(winding_C, 0.5);
   result.winding_p95_C = select::quantile(winding_C, 0.95);

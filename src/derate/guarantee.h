@@ -14,7 +14,6 @@
 #include "derate/held_current.h"
 #include "motor/motor.h"
 #include "robot/robot.h"
-#include "select/evaluate.h"
 #include "thermal/transient.h"
 
 namespace heatsoak::derate {
@@ -95,17 +94,19 @@ struct GuaranteeOptions {
   int threads = 0;
 };
 
-/// Result of the check on motors that the search did not use.
+/// Result of the check on the motors that determined the safety factor. Because the factor was selected with them, `over` gives no
+/// confidence bound of its own: only GuaranteeOptions::required_share is shown.
 struct Guarantee {
   int samples = 0;
-  int over = 0;  ///< motors that exceed a limit in at least one use
-  select::Interval95 over_share;
-  /// Lower bound of the share of motors that keep every limit, one-sided with kCertainty_share, exact (Clopper and Pearson 1934).
-  double least_kept_share = 0.0;
+  int over = 0;                ///< motors that exceed a limit in at least one use
   double winding_p50_C = 0.0;  ///< percentile of the motors' peak temperatures over all uses
   double winding_p95_C = 0.0;
   double winding_most_C = 0.0;
 };
+
+/// Returns the largest number of `samples` motors over a limit with which a single check shows the required share: its lower bound is
+/// one-sided with kCertainty_share and exact (Clopper and Pearson 1934). Returns -1 if the samples are too few.
+int most_over(const GuaranteeOptions& goal);
 
 /// Summarises the peaks of drawn motors, at least one.
 Guarantee guarantee(std::span<const MotorPeak> peaks);

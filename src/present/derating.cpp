@@ -183,10 +183,8 @@ Document document_of(const derate::Derating& derating, const motor::Motor& motor
   const derate::Guarantee& checked = derating.guarantee;
   Document document{
       .headline = {{fmt::format(
-                       "{} in {}: with {:.0f} % certainty at least {:.1f} % of the motors within their tolerances keep the winding below "
-                       "{:.0f} °C{}{} in air of {:.0f} °C.",
-                       derating.motor_id, derating.robot_id, 100.0 * derate::kCertainty_share,
-                       std::floor(1000.0 * checked.least_kept_share) / 10.0, derating.rules.limits.winding_C, limit_range_words(derating),
+                       "{} in {}: {} keep the winding below {:.0f} °C{}{} in air of {:.0f} °C.", derating.motor_id, derating.robot_id,
+                       derate::promised_share_text(derating), derating.rules.limits.winding_C, limit_range_words(derating),
                        derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
                        derating.rules.hottest_ambient_C)},
                    {fmt::format("The {} hardest uses were simulated, with {} thermal data.", derating.uses.size(), derating.data_quality)},
@@ -194,9 +192,8 @@ Document document_of(const derate::Derating& derating, const motor::Motor& motor
                                 derating.observer.heat_safety_factor(),
                                 derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
                                 derate::limp_current_A(derating))}},
-      .paragraphs = {fmt::format("Confidence {:.6g}: {} of {} drawn motors exceeded a limit in the {} hardest uses. This "
-                                 "confidence needs at least {} draws.",
-                                 derating.options.guarantee.required_share, checked.over, checked.samples, derating.uses.size(),
+      .paragraphs = {fmt::format("Confidence {:.6g}: {} in the {} hardest uses. This confidence needs at least {} draws.",
+                                 derating.options.guarantee.required_share, derate::drawn_motors_text(checked), derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "
                                  "(the hottest).",

@@ -62,7 +62,7 @@ TEST(DerateCommand, TellsWhatItGuarantees) {
   EXPECT_LE(answer["guarantee"]["over"].get<int>(), 0.05 * answer["guarantee"]["samples"].get<int>());
   const nlohmann::json& table = answer["table"];
   EXPECT_EQ(table["current_A"].size(), table["speed_rad_per_s"].size() * table["stator_C"].size() * table["winding_C"].size());
-  EXPECT_THAT(done.err, HasSubstr("drawn motors exceeded a limit"));
+  EXPECT_THAT(done.err, HasSubstr("drawn motors, which determined"));
   EXPECT_THAT(content_of(folder.path() / "guard.h"), HasSubstr("maxon_ecx_flat_32l_48v_step"));
 }
 
@@ -99,6 +99,21 @@ TEST(DerateCommand, EffectThatADiagnosisFoundActsInTheFirmware) {
   // A calibrated motor needs a smaller safety factor than a data sheet, so more current is allowed.
   EXPECT_LT(after.json()["heat_reserve_ratio"].get<double>(), before.json()["heat_reserve_ratio"].get<double>());
   EXPECT_GT(lasting_A(after.json()), 1.02 * lasting_A(before.json()));
+}
+
+// Both have one schema. The answer of the command adds what the terminal shows: version, notes and warnings.
+TEST(DerateCommand, JsonFileIsTheAnswerWithoutItsNotes) {
+  const TemporaryFolder folder;
+  const ProgramRun done =
+      run(kDerateEcx + Words{"--motor", kMotor, "--samples", "60", "--to", "json", "--out", "table.json", "--json", "-"}, here(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const nlohmann::json file = nlohmann::json::parse(content_of(folder.path() / "table.json"));
+  nlohmann::json answer = done.json();
+  EXPECT_EQ(answer["version"], file["program"]);
+  for (const char* const added : {"version", "notes", "warnings"}) {
+    EXPECT_EQ(answer.erase(added), 1U) << added;
+  }
+  EXPECT_EQ(answer, file);
 }
 
 TEST(DerateCommand, WritesTheTableAlone) {

@@ -451,7 +451,7 @@ TEST(CHeaderText, NamesHeatAfterItsLawAndNodes) {
 
 TEST(CHeaderText, ACommentEndsWhereItShould) {
   EXPECT_THAT(header_text(), HasSubstr("a * / robot"));
-  EXPECT_THAT(header_text(), HasSubstr("Of 400 motors drawn independently, 10 exceeded"));
+  EXPECT_THAT(header_text(), HasSubstr("10 of the 400 drawn motors, which determined the safety factor, exceeded a limit"));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ inline Derating derating_of(const GuardedMotor& guarded) {
           .options = {},
           .assumed = {},
           .effects = {},
-          .guarantee = {.samples = 400, .over = 10, .over_share = {0.01, 0.05}},
+          .guarantee = {.samples = 400, .over = 10},
           .uses = {},
           .reachable_speed_rad_per_s = guarded.rules.most_speed_rad_per_s};
 }

@@ -72,7 +72,7 @@ TEST(SensorPlan, ThermistorLowersTheSafetyFactor) {
   // A motor that starts at its limit gets the gain at once.
   EXPECT_GT(plan.sensor_fault_warm_C, derating.rules.limits.winding_C);
   EXPECT_LT(plan.sensor_fault_warm_C, derating.rules.limits.winding_C + 10.0);
-  EXPECT_GE(plan.guarantee.least_kept_share, derating.options.guarantee.required_share);
+  EXPECT_LE(plan.guarantee.over, most_over(derating.options.guarantee));
   RecordProperty("safety_factor_without", fmt::format("{:.3f}", derating.observer.heat_safety_factor()));
   RecordProperty("safety_factor_with", fmt::format("{:.3f}", plan.observer.heat_safety_factor()));
   RecordProperty("sensor_fault_warm_C", fmt::format("{:.1f}", plan.sensor_fault_warm_C));

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <span>
 
 #include "base/version.h"
@@ -55,12 +54,12 @@ std::string guarantee_text(const Derating& derating) {
       " * Winding at most {:.0f} degC{}{}, air from {:.0f} to {:.0f} degC; thermal data: {}.\n"
       " * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds "
       "its\n"
-      " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}: with {:.0f} % certainty at least {:.1f} % of the motors "
-      "within\n"
-      " * their tolerances keep every limit in the {} hardest uses. Of {} motors drawn independently, {} exceeded one; the hottest winding "
-      "reached\n"
-      " * {:.0f} degC. The factor is the smallest at which this bound holds for these motors (order statistic, Wilks 1941): other draws "
-      "give another.\n"
+      " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}:\n"
+      " * {} keep every limit in the {} hardest uses.\n"
+      " * {}; the hottest winding reached\n"
+      " * {:.0f} degC. These draws show no more than the stated share, because they selected the factor (order statistic, Wilks 1941; to "
+      "1 %);\n"
+      " * other draws give another factor.\n"
       "{}"
       " * Computed, not measured; plausible but wrong readings of current, speed and air are not covered.\n",
       derating.rules.limits.winding_C,
@@ -69,8 +68,8 @@ std::string guarantee_text(const Derating& derating) {
           : "",
       derating.rules.limits.stator_C ? fmt::format(", stator at most {:.0f} degC", *derating.rules.limits.stator_C) : "",
       derating.options.coldest_ambient_C, derating.rules.hottest_ambient_C, derating.data_quality, derating.observer.heat_safety_factor(),
-      derating.options.guarantee.required_share, 100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0,
-      derating.uses.size(), checked.samples, checked.over, checked.winding_most_C,
+      derating.options.guarantee.required_share, promised_share_text(derating), derating.uses.size(), drawn_motors_text(checked),
+      checked.winding_most_C,
       derating.sensor ? fmt::format(" * All this is without the temperature sensor; with it the safety factor on heat is {:.3g}, see "
                                     "SENSOR_MOST_GAIN_A below.\n",
                                     derating.sensor->observer.heat_safety_factor())

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "derate/c_header/c_text.h"
 #include "derate/c_header/parts.h"
+#include "derate/export_text.h"
 
 namespace heatsoak::derate::c_header {
 namespace {
@@ -341,8 +342,8 @@ std::string comment(const SensorPlan& plan) {
   return fmt::format(
       "\n"
       "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
-      " * With {:.0f} % certainty at least {:.1f} % of the motors keep every limit although each sensor reads too little by that error;\n"
-      " * {} of {} drawn motors exceeded one. The cross-check drops the correct sensor of {}.\n"
+      " * The promise is that of the head comment, although each sensor reads too little by that error:\n"
+      " * {}. The cross-check drops the correct sensor of {}.\n"
       " * A PLAUSIBLE BUT WRONG SENSOR allows at most SENSOR_MOST_GAIN_A more than model_only_A: the nominal motor then reaches {:.0f} "
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
@@ -353,7 +354,7 @@ std::string comment(const SensorPlan& plan) {
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      100.0 * kCertainty_share, std::floor(1000.0 * checked.least_kept_share) / 10.0, checked.over, checked.samples, plan.dropped,
+      drawn_motors_text(checked), plan.dropped,
       plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over, checked.samples, sensor_flags(plan.options));
 }
 

@@ -136,7 +136,7 @@ class PlanSearch {
       SensorPlan plan = plan_with(tried);
       std::vector<SensedPeak> fresh = peaks(plan, fine_s(), kStreamsApart);
       plan.guarantee = guarantee_of(fresh);
-      const bool holds = plan.guarantee.least_kept_share >= model_only_.options.guarantee.required_share;
+      const bool holds = plan.guarantee.over <= most_over(model_only_.options.guarantee);
       if (holds) {
         made.emplace(Promise{std::move(plan), std::move(fresh)});
       }
