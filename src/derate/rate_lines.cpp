@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "derate/export_text.h"
-
 namespace heatsoak::derate {
 namespace {
 
@@ -25,7 +23,7 @@ bool repeats_its_operand(thermal::Operation operation) {
 }  // namespace
 
 RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style)
-    : observer_(observer), style_(style), uses_(observer.formula().steps().size(), 0) {
+    : observer_(observer), style_(style), uses_(observer.formula().steps().size(), 0), names_(observer) {
   const thermal::Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(rate_steps);
   for (std::size_t i = 0; i < needed.size(); ++i) {
@@ -48,7 +46,7 @@ RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, 
     Text text = expression(step);
     if (step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input &&
         (is_variable(place) || text.text.size() > kLongestInlined) && std::ranges::find(rate_steps, place) == rate_steps.end()) {
-      const std::string name = name_for(place);
+      const std::string name = names_.name_for(place);
       text_ += fmt::format("  const {} {} = {};\n", style_.number, name, text.text);
       text = {name, false};
     }
@@ -63,31 +61,6 @@ bool RateLines::is_variable(int place) const {
   const thermal::Formula& formula = observer_.formula();
   return uses_[static_cast<std::size_t>(place)] > 1 || !formula.name_of(place).empty() ||
          repeats_its_operand(formula.steps()[static_cast<std::size_t>(place)].operation);
-}
-
-std::string RateLines::name_for(int place) {
-  const thermal::Formula& formula = observer_.formula();
-  const thermal::Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
-  const auto temperature = [&](int of) {
-    const thermal::Formula::Step& input = formula.steps()[static_cast<std::size_t>(of)];
-    return input.operation == thermal::Operation::input ? formula.inputs()[static_cast<std::size_t>(input.left)] : std::string();
-  };
-  const auto without_unit = [](const std::string& name) { return name.substr(0, name.size() - 2); };
-  std::string name(formula.name_of(place));
-  if (name.empty() && step.operation == thermal::Operation::subtract && temperature(step.left).ends_with("_C") &&
-      temperature(*step.right).ends_with("_C")) {
-    name = fmt::format("{}_above_{}_K", without_unit(temperature(step.left)), without_unit(temperature(*step.right)));
-  }
-  if (name.empty()) {
-    const std::string_view law = formula.law_of(place);
-    name = fmt::format("{}_term", law.empty() ? "drive" : law);
-  }
-  name = identifier(name);
-  std::string unique = name;
-  for (int next = 2; !names_.insert(unique).second; ++next) {
-    unique = fmt::format("{}_{}", name, next);
-  }
-  return unique;
 }
 
 std::string RateLines::operand(int place) const {

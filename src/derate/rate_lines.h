@@ -2,13 +2,13 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "derate/observer.h"
+#include "derate/step_names.h"
 
 namespace heatsoak::derate {
 
@@ -44,7 +44,6 @@ class RateLines {
   };
 
   [[nodiscard]] bool is_variable(int place) const;
-  [[nodiscard]] std::string name_for(int place);
   Text expression(const thermal::Formula::Step& step);
   [[nodiscard]] std::string operand(int place) const;
 
@@ -52,7 +51,7 @@ class RateLines {
   LineStyle style_;
   std::vector<int> uses_;        ///< number of uses of each step
   std::map<int, Text> written_;  ///< text of each step that was written
-  std::set<std::string> names_;  ///< names of variables that are in use
+  StepNames names_;
   std::string text_;
   bool calls_square_root_ = false;
   bool calls_thermal_math_ = false;

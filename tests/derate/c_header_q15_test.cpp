@@ -354,6 +354,50 @@ exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
   }
 }
 
+// One effect can be expressed, so only the other is named; together with an effect that fails for the same reason, both are.
+TEST(Q15HeaderText, NamesOnlyTheEffectsThatItCannotCompute) {
+  const std::string radiation = R"([effects.my_radiation]
+type = "radiation"
+emissive_area = { value = "0.002 m2", origin = "estimated", derivation = "a test" }
+)";
+  const std::string bearing = R"([effects.my_bearing]
+type = "bearing_friction"
+loss = { value = "0.5 W", origin = "estimated", derivation = "a test" }
+viscous_share = { value = "0.5", origin = "estimated", derivation = "a test" }
+thinning = { value = "0.02 1/K", origin = "estimated", derivation = "a test" }
+)";
+  const std::string air = R"([effects.air]
+type = "natural_convection"
+conductance = { value = "0.05 W/K", origin = "estimated", derivation = "a test" }
+exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
+)";
+  const auto answer = [](const std::string& lines) -> std::string {
+    try {
+      static_cast<void>(exported("c_header_q15", derating_of(ecx_32_with(lines))));
+    } catch (const base::Failure& failure) {
+      return failure.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(answer(radiation), "accepted");
+  const std::string one = answer(radiation + "\n" + bearing);
+  EXPECT_THAT(one, HasSubstr("cannot express my_bearing (bearing_friction): "));
+  const std::string two = answer(radiation + "\n" + bearing + "\n" + air);
+  EXPECT_THAT(two, testing::AllOf(HasSubstr("my_bearing (bearing_friction)"), HasSubstr("air (natural_convection)")));
+  EXPECT_THAT(one + two, testing::Not(HasSubstr("radiation)")));
+}
+
+TEST(Q15HeaderText, LinesHaveTheNamesOfTheQuantitiesWithScaleAndUnit) {
+  const std::string text = exported("c_header_q15");
+  for (const char* const line :
+       {"const int32_t copper_loss_W = [^;]+; /\\* 2\\^-[0-9]+ W \\*/", "const int32_t winding_C = state_C\\[0\\]; /\\* 2\\^-20 degC \\*/",
+        "const int32_t winding_to_stator_W = [^;]+; /\\* 2\\^-[0-9]+ W \\*/",
+        "const int32_t winding_rate_K_per_s = [^;]+; /\\* 2\\^-[0-9]+ K/s \\*/"}) {
+    EXPECT_TRUE(std::regex_search(text, std::regex(line))) << line;
+  }
+  EXPECT_FALSE(std::regex_search(text, std::regex("\\bt[0-9]+\\b"))) << "names of steps of the formula";
+}
+
 // Exact arithmetic on the statements' own scales: the rounding bound holds for the constants and is at most a few steps wide.
 TEST(Q15Lines, RoundingIsBounded) {
   const integer_form::IntegerLines lines = integer_form::integer_lines(ecx_derating(), "motor");

@@ -47,6 +47,14 @@ TEST(VescExporter, OtherMotorTypesGetNoCurrent) {
   }
 }
 
+TEST(VescExporter, NamesTheQuantitiesOfTheLaw) {
+  const std::string text = exported("vesc");
+  for (const char* const name : {"hs-copper-loss-W", "hs-winding-to-stator-W", "hs-stator-to-ambient-W", "hs-winding-rate-K-per-s"}) {
+    EXPECT_THAT(text, HasSubstr(fmt::format("(var {} ", name)));
+  }
+  EXPECT_FALSE(std::regex_search(text, std::regex("\\bt[0-9]+\\b"))) << "names of steps of the formula";
+}
+
 TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
   EXPECT_THAT(exported("vesc"), testing::AllOf(HasSubstr("motor type FOC"), HasSubstr("the controller never limits below it"),
                                                HasSubstr("default of 0.05 A or less"), HasSubstr("foc_temp_comp: off")));

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <string>
 
 #include "derate/export_text.h"
 #include "derate/exporter.h"
+#include "derate/step_names.h"
 
 namespace heatsoak::derate::exporters {
 namespace {
@@ -28,13 +30,16 @@ std::string literal(double value) {
   return text.find('.') != std::string::npos ? text : text.insert(std::min(exponent, text.size()), ".0");
 }
 
-std::string operand(const thermal::Formula& formula, int place) {
+/// Names of the steps by their index. Constants and inputs have none, because they stand where they are used.
+using Names = std::map<int, std::string>;
+
+std::string operand(const thermal::Formula& formula, const Names& names, int place) {
   const thermal::Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
   if (step.operation == thermal::Operation::constant) {
     return literal(step.value);
   }
   if (step.operation != thermal::Operation::input) {
-    return fmt::format("t{}", place);
+    return names.at(place);
   }
   const auto input = static_cast<std::size_t>(step.left);
   return input < observed::kSignalCount ? std::string("hs-") + (input == observed::current ? "current-A"
@@ -43,9 +48,9 @@ std::string operand(const thermal::Formula& formula, int place) {
                                         : fmt::format("hs-state{}-C", input - observed::kSignalCount);
 }
 
-std::string expression(const thermal::Formula& formula, const thermal::Formula::Step& step) {
-  const std::string left = operand(formula, step.left);
-  const std::string right = step.right ? operand(formula, *step.right) : "";
+std::string expression(const thermal::Formula& formula, const Names& names, const thermal::Formula::Step& step) {
+  const std::string left = operand(formula, names, step.left);
+  const std::string right = step.right ? operand(formula, names, *step.right) : "";
   switch (step.operation) {
     case thermal::Operation::add:
       return fmt::format("(+ {} {})", left, right);
@@ -72,15 +77,20 @@ std::string expression(const thermal::Formula& formula, const thermal::Formula::
 std::string step_function(const Observer& observer) {
   const thermal::Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(observer.rate_steps());
+  StepNames unique(observer, {"current_A", "speed_rad_per_s", "ambient_C", "may_drive", "last_A", "longest_s"});
+  Names names;
   std::string text = "(defun hs-step (hs-current-A hs-speed-rad-per-s hs-ambient-C dt-s) {\n";
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const thermal::Formula::Step& step = formula.steps()[i];
     if (needed[i] != 0 && step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input) {
-      text += fmt::format("  (var t{} {})\n", i, expression(formula, step));
+      std::string name = "hs-" + unique.name_for(static_cast<int>(i));
+      std::ranges::replace(name, '_', '-');
+      text += fmt::format("  (var {} {})\n", name, expression(formula, names, step));
+      names.emplace(static_cast<int>(i), std::move(name));
     }
   }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
-    text += fmt::format("  (var change{0}-K (- (* dt-s {1}) hs-carry{0}-K))\n", node, operand(formula, observer.rate_steps()[node]));
+    text += fmt::format("  (var change{0}-K (- (* dt-s {1}) hs-carry{0}-K))\n", node, operand(formula, names, observer.rate_steps()[node]));
   }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
     text += fmt::format(

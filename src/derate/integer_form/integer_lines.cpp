@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
 
 #include "base/diagnostic.h"
+#include "base/unit_names.h"
 #include "derate/export_text.h"
 #include "derate/plausible_range.h"
+#include "derate/step_names.h"
 
 namespace heatsoak::derate::integer_form {
 namespace {
@@ -27,11 +32,16 @@ int bits_for(double low, double high) {
 class Writer {
  public:
   Writer(const Derating& derating, const std::string& prefix)
-      : derating_(derating), prefix_(prefix), formula_(derating.observer.formula()), values_(formula_.steps().size()) {}
+      : derating_(derating),
+        prefix_(prefix),
+        formula_(derating.observer.formula()),
+        unique_(derating.observer, {"input", "state_C", "change"}),
+        values_(formula_.steps().size()) {}
 
   IntegerLines write() {
     const Observer& observer = derating_.observer;
     const std::vector<char> needed = formula_.needed_for(observer.rate_steps());
+    require_integer_functions(needed);
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (needed[i] != 0) {
         add_step(static_cast<int>(i));
@@ -45,17 +55,39 @@ class Writer {
   }
 
  private:
-  [[nodiscard]] static std::string name(int place) { return fmt::format("t{}", place); }
+  [[nodiscard]] const std::string& name(int place) const { return names_.at(place); }
   [[nodiscard]] const FixedPoint& value(int place) const { return values_[static_cast<std::size_t>(place)]; }
 
-  [[nodiscard]] base::Failure refusal(std::string_view what) const {
+  [[nodiscard]] base::Failure refusal(const std::set<std::string>& laws, std::string_view what) const {
     return {base::ExitCode::bad_input,
-            fmt::format("c_header_q15 cannot express the effects {}: {}; use --to c_header", own_effects_text(derating_), what)};
+            fmt::format("c_header_q15 cannot express {}: {}; use --to c_header", effects_text(derating_, laws), what)};
+  }
+  [[nodiscard]] base::Failure refusal(int place, std::string_view what) const {
+    return refusal({std::string(formula_.law_of(place))}, what);
+  }
+
+  /// Throws refusal() with every effect that needs a function without an integer implementation.
+  void require_integer_functions(const std::vector<char>& needed) const {
+    std::set<std::string> laws;
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      const thermal::Operation operation = formula_.steps()[i].operation;
+      if (needed[i] != 0 && (operation == thermal::Operation::square_root || operation == thermal::Operation::power ||
+                             operation == thermal::Operation::exponential)) {
+        laws.emplace(formula_.law_of(static_cast<int>(i)));
+      }
+    }
+    if (!laws.empty()) {
+      throw refusal(laws, "its law needs a square root, a power or an exponential");
+    }
   }
 
   void set(int place, const FixedPoint& made, const std::string& expression) {
     values_[static_cast<std::size_t>(place)] = made;
-    lines_.text += fmt::format("  const int32_t {} = {};\n", name(place), expression);
+    const std::string& name = names_.emplace(place, unique_.name_for(place)).first->second;
+    const std::optional<base::UnitOfName> named = base::unit_of_name(name);
+    const std::string unit = named && !named->unit.empty() ? " " + named->unit : "";
+    const std::string of = made.low == made.high ? fmt::format("{:.6g} in steps of ", made.low) : "";
+    lines_.text += fmt::format("  const int32_t {} = {}; /* {}2^{}{} */\n", name, expression, of, -made.bits, unit);
   }
 
   void add_step(int place) {
@@ -78,7 +110,7 @@ class Writer {
       case thermal::Operation::positive_part:
         return add_positive_part(place, step);
       default:
-        throw refusal("a law needs a square root, a power or an exponential");
+        return;  // refused by require_integer_functions()
     }
   }
 
@@ -151,7 +183,7 @@ class Writer {
     const FixedPoint& b = value(*step.right);
     const double least = std::min(std::abs(b.low), std::abs(b.high)) - b.most_error;
     if (b.low * b.high <= 0.0 || least <= 0.0) {
-      throw refusal("a law divides by a quantity that may be 0");
+      throw refusal(place, "its law divides by a quantity that may be 0");
     }
     const auto corners = {a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high};
     FixedPoint made{.low = std::min(corners), .high = std::max(corners), .bits = 0, .most_error = 0.0};
@@ -159,7 +191,7 @@ class Writer {
     made.bits = std::min(bits_for(made.low, made.high), a.bits - b.bits + kNumberBits);
     const int shift = made.bits + b.bits - a.bits;
     if (shift < 0) {
-      throw refusal("a law divides numbers of too different sizes");
+      throw refusal(place, "its law divides numbers of too different sizes");
     }
     made.most_error = (a.most_error + most * b.most_error) / least + unit(made.bits);
     set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(shift)));
@@ -182,6 +214,8 @@ class Writer {
   const Derating& derating_;
   const std::string& prefix_;
   const thermal::Formula& formula_;
+  StepNames unique_;
+  std::map<int, std::string> names_;  ///< names of the steps that were written
   std::vector<FixedPoint> values_;
   IntegerLines lines_;
 };

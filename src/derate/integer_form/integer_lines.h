@@ -22,7 +22,8 @@ struct FixedPoint {
 };
 
 struct IntegerLines {
-  /// One line "  const int32_t t7 = …;" per step. Inputs are input->…, states state_C[node]; names of helpers begin with the prefix and
+  /// One line "  const int32_t copper_loss_W = …; /* 2^-23 W */" per step, with the value of its last bit; a line without a unit is an
+  /// intermediate value in SI units. Inputs are input->…, states state_C[node]; names of helpers begin with the prefix and
   /// "_".
   std::string text;
   std::vector<std::string> rates;        ///< per state: expression of its rate
@@ -30,7 +31,7 @@ struct IntegerLines {
 };
 
 /// Generates the statements. Interval arithmetic selects the scale of each step and bounds its rounding error. Throws Failure (bad_input)
-/// with the effects if a law needs a function without an integer implementation, or divides by a value that may be 0.
+/// with the failing effects if a law needs a function without an integer implementation, or divides by a value that may be 0.
 IntegerLines integer_lines(const Derating& derating, const std::string& prefix);
 
 }  // namespace heatsoak::derate::integer_form
