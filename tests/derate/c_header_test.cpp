@@ -301,6 +301,31 @@ TEST_P(CHeader, forgets_no_heat_of_an_impossible_overcurrent) {
   }
 }
 
+// One wrong sample must not disable the motor for seconds, whatever its size. What may have flowed counts as measured.
+TEST_P(CHeader, one_impossible_current_costs_a_few_kelvins_and_is_named) {
+  const double most_A = guarded_ecx_32().rules.most_current_A;
+  const auto after = [&](double current_A) { return ask(fmt::format("start 30\nin {:.4f} 0 25\nin 0 0 25\n", current_A)); };
+  const std::vector<Answer> driver = after(most_A);
+  EXPECT_NE(driver[0].reason, input_unknown);
+  const std::vector<Answer> twice = after(1.99 * most_A);
+  EXPECT_NE(twice[0].reason, input_unknown);
+  EXPECT_NEAR(twice[0].winding_C - 30.0, 1.99 * 1.99 * (driver[0].winding_C - 30.0), 0.05);
+  for (const double ratio : {2.01, 10.0, -10.0, 1e6}) {
+    const std::vector<Answer> impossible = after(ratio * most_A);
+    EXPECT_EQ(impossible[0].reason, input_unknown) << ratio;
+    EXPECT_GE(impossible[0].winding_C, driver[0].winding_C) << ratio;
+    EXPECT_LE(impossible[0].winding_C, driver[0].winding_C + 0.05) << ratio;
+    EXPECT_GT(impossible[1].allowed_A, 0.9F * driver[0].allowed_A) << ratio;
+  }
+  // Such readings that last leave no current.
+  std::string lines = "start 30\n";
+  for (int i = 0; i < 300; ++i) {
+    lines += fmt::format("in {:.4f} 0 25\n", 10.0 * most_A);
+  }
+  EXPECT_EQ(ask(lines).back().allowed_A, 0.0F);
+  EXPECT_EQ(ask(lines).back().reason, input_unknown);
+}
+
 TEST_P(CHeader, takes_the_hottest_case_for_what_is_no_number) {
   const std::vector<Answer> known = ask("start 80\nin 0 0 25\nin 0 0 25\n");
   for (const char* const in : {"in nan 0 25\n", "in inf 0 25\n", "in -inf 0 25\n", "in 0 nan 25\n", "in 0 0 nan\n", "in 0 0 -273\n",
