@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "derate/sensed/sensor_plan.h"
 #include "sensed_motor.h"
@@ -24,6 +25,8 @@ const CompiledGuard& guard() {
       "resistance");
   return made;
 }
+
+constexpr int kCalibrationReadings = 16;  ///< as the header states
 
 /// A motor's terminals with all declared errors at once.
 struct Terminals {
@@ -47,13 +50,18 @@ class ResistanceSensor {
     sensed_.start(body_C);
     guard().function<void(void*, float)>("resistance_start")(sensor_.data(), body_C);
   }
-  /// Reads twice, because a reading requires that the current has not just changed.
+  /// Reads once more than a calibration takes, because a reading requires that the current has not just changed.
   float reading_C(const Terminals& terminals, double current_A, double speed_rad_per_s, double winding_C) {
     const CompiledGuard::Input in{static_cast<float>(current_A + terminals.current_error_A), static_cast<float>(speed_rad_per_s), 30.0F};
     const auto voltage_V = static_cast<float>(terminals.voltage_V(current_A, speed_rad_per_s, winding_C));
-    const auto read = guard().function<float(void*, const void*, const void*, float)>("resistance_reading_C");
-    read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
-    return read(sensor_.data(), sensed_.state().data(), &in, voltage_V);
+    for (int i = 0; i < kCalibrationReadings; ++i) {
+      read(in, voltage_V);
+    }
+    return read(in, voltage_V);
+  }
+  float read(const CompiledGuard::Input& in, float voltage_V) {
+    return guard().function<float(void*, const void*, const void*, float)>("resistance_reading_C")(sensor_.data(), sensed_.state().data(),
+                                                                                                   &in, voltage_V);
   }
   /// Advances the guard's own state under load.
   void work(int steps) {
@@ -119,6 +127,43 @@ TEST(WindingResistance, AMotorThatHasWorkedDoesNotCalibrate) {
   ResistanceSensor sensor;
   sensor.work(500);
   EXPECT_TRUE(std::isnan(sensor.reading_C(Terminals{}, 6.0, 0.0, 60.0)));
+}
+
+// A reading that cannot be used must not spoil the mean, and fewer readings than stated give no temperature.
+TEST(WindingResistance, CalibratesWithTheStatedNumberOfUsableReadings) {
+  ResistanceSensor sensor;
+  const CompiledGuard::Input in{6.0F, 0.0F, 30.0F};
+  const auto voltage_V = static_cast<float>(Terminals{}.voltage_V(6.0, 0.0, 30.0));
+  sensor.read(in, voltage_V);  // the current has just changed
+  for (int i = 1; i < kCalibrationReadings; ++i) {
+    EXPECT_TRUE(std::isnan(sensor.read(in, voltage_V))) << i;
+    for (const float broken_V : {std::nanf(""), -voltage_V, std::numeric_limits<float>::infinity()}) {
+      EXPECT_TRUE(std::isnan(sensor.read(in, broken_V))) << i;
+    }
+  }
+  EXPECT_NEAR(sensor.read(in, voltage_V), 30.0, 0.1);
+}
+
+TEST(WindingResistance, NoiseOfTheVoltageCountsWithAQuarterOfItsRms) {
+  constexpr double kNoise_V = 0.1;
+  constexpr int kStarts = 400;
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise_V(0.0, kNoise_V);
+  const Terminals exact;
+  const double rest_V = exact.voltage_V(6.0, 0.0, 30.0);
+  double squares_K2 = 0.0;
+  for (int start = 0; start < kStarts; ++start) {
+    ResistanceSensor sensor;
+    const CompiledGuard::Input in{6.0F, 0.0F, 30.0F};
+    for (int i = 0; i <= kCalibrationReadings; ++i) {
+      sensor.read(in, static_cast<float>(rest_V + noise_V(engine)));
+    }
+    const double error_K = sensor.read(in, static_cast<float>(rest_V)) - 30.0;
+    squares_K2 += error_K * error_K;
+  }
+  const double one_reading_K = kNoise_V / rest_V * (1.0 + 0.0039 * 5.0) / 0.0039;
+  EXPECT_NEAR(std::sqrt(squares_K2 / kStarts), 0.25 * one_reading_K, 0.15 * 0.25 * one_reading_K);
+  EXPECT_LT(0.25 * one_reading_K, 1.05) << "docs/sensors.md states 1.0 K";
 }
 
 TEST(WindingResistance, HelpsAtRestAndIsTheGuardWithoutASensorAtSpeed) {

@@ -29,6 +29,7 @@ typedef struct {
   float lag_C;                  /* temperature of the sensor itself */
   float last_C;                 /* last plausible reading */
   float unread_s;               /* time since a reading was used */
+  float sensed_share;           /* 0: current without the sensor, 1: with it */
   float gap_s;                  /* time since a plausible reading */
   float jumped_s;               /* time for which the readings have contradicted the motor */
   float cold_s;
@@ -61,6 +62,7 @@ static inline void @_begin_sensed(@_sensed_state *state) {
   state->frozen_C = state->model.state_C[0];
   state->frozen_nominal_C = state->model.state_C[0];
   state->unread_s = @CAP@_SENSOR_HOLD_S;
+  state->sensed_share = 0.0f;
   state->gap_s = 1e6f;
   state->jumped_s = 0.0f;
   state->cold_s = 0.0f;
@@ -153,6 +155,7 @@ static inline void @_forget_sensor(@_sensed_state *state, float allowed_A) {
   state->allowed_A = allowed_A;
   state->lag_C = state->model.state_C[@SENSOR_NODE@];
   state->unread_s = @CAP@_SENSOR_HOLD_S;
+  state->sensed_share = 0.0f;
 }
 
 static inline bool @_is_sensed_started(const @_sensed_state *state) {
@@ -161,6 +164,7 @@ static inline bool @_is_sensed_started(const @_sensed_state *state) {
                     @_is_between(0.0f, state->capped_A, @CAP@_MOST_CURRENT_A) &&
                     @_is_between(0.0f, state->allowed_A, @CAP@_MOST_CURRENT_A) &&
                     @_is_between(0.0f, state->unread_s, 2.0f * @CAP@_SENSOR_HOLD_S) && @_is_between(0.0f, state->gap_s, 2e6f) &&
+                    @_is_between(0.0f, state->sensed_share, 1.0f) &&
                     @_is_between(0.0f, state->jumped_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S) &&
                     @_is_between(0.0f, state->cold_s, 2.0f * @CAP@_SENSOR_CONTRADICTION_S);
   for (node = 0; node < @NODES@; ++node) {
@@ -212,7 +216,23 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
   @_advance(state->state_C, state->carry_K, rate_K_per_s);
 @ADVANCE_LAG@}
 
+/* Moves between the currents with and without the sensor, so that a gap in the readings causes no step: down from half of
+   @CAP@_SENSOR_HOLD_S without a reading on, up within @CAP@_SENSOR_HOLD_S. Never above the current that holds at this time. */
+static inline float @_current_with_sensor_A(@_sensed_state *state, float speed_rad_per_s) {
+  const float hottest_C = @_hottest_body_C(state->state_C);
+  const float sensed_A = @_sensed_allowed_A(speed_rad_per_s, hottest_C, state->state_C[0]);
+  const float without_A = @_allowed_A(speed_rad_per_s, hottest_C, state->state_C[0]);
+  const float lower_A = without_A < sensed_A ? without_A : sensed_A;
+  const float most_share = 2.0f - 2.0f * state->unread_s / @CAP@_SENSOR_HOLD_S;
+  float share = state->sensed_share + @CAP@_PERIOD_S / @CAP@_SENSOR_HOLD_S;
+  share = share < most_share ? share : most_share;
+  share = share < 1.0f ? share : 1.0f;
+  state->sensed_share = share > 0.0f ? share : 0.0f;
+  return lower_A + state->sensed_share * (sensed_A - lower_A);
+}
+
 /* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period.
+   Once the sensor is dropped or an input is unknown, the current falls to that of @_step at once.
    While ambient_C is not measured (the hottest declared air), a sensor stuck near ambient_C may never be dropped; SENSOR_MOST_GAIN_A then still bounds its effect. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
@@ -251,9 +271,7 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
 @REJECTED@  }
   speed_rad_per_s = measured->speed_rad_per_s < 0.0f ? -measured->speed_rad_per_s : measured->speed_rad_per_s;
   state->capped_A = @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->capped_C), state->capped_C[0]);
-  sensed_A = state->unread_s < @CAP@_SENSOR_HOLD_S
-                 ? @_sensed_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0])
-                 : @_allowed_A(speed_rad_per_s, @_hottest_body_C(state->state_C), state->state_C[0]);
+  sensed_A = @_current_with_sensor_A(state, speed_rad_per_s);
   most_A = state->capped_A + @CAP@_SENSOR_MOST_GAIN_A * (1.0f - state->cold_s / @CAP@_SENSOR_CONTRADICTION_S);
   sensed_A = sensed_A < most_A ? sensed_A : most_A;
   sensed_A = sensed_A < @CAP@_MOST_CURRENT_A ? sensed_A : @CAP@_MOST_CURRENT_A;
@@ -276,14 +294,17 @@ static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_
 
 constexpr std::string_view kResistance = R"(/* The winding's temperature from its resistance, for @_step_with_sensor. */
 typedef struct {
-  float resistance_25C_ohm; /* 0: not calibrated yet */
+  float resistance_25C_ohm; /* mean of the calibration */
+  int samples;              /* of the calibration */
   float rest_C;             /* temperature of the whole motor when the calibration began */
   float last_A;
 } @_resistance;
 
-/* Call after a rest at body_C. The first usable reading calibrates the sensor, if the winding has not yet warmed by 1 K. */
+/* Call after a rest at body_C. The first @CAP@_RESISTANCE_SAMPLES usable readings calibrate the sensor, if the winding warms by less than
+   1 K meanwhile; else there are no readings until the next rest. Noise of the voltage counts with a quarter of its rms. */
 static inline void @_resistance_start(@_resistance *sensor, float body_C) {
   sensor->resistance_25C_ohm = 0.0f;
+  sensor->samples = 0;
   sensor->rest_C = body_C;
   sensor->last_A = 0.0f;
 }
@@ -305,15 +326,23 @@ static inline float @_resistance_reading_C(@_resistance *sensor, const @_sensed_
     return nothing;
   }
   resistance_ohm = (voltage_V - @CAP@_TORQUE_CONSTANT_NM_PER_A * speed_rad_per_s) / current_A;
-  if (!(sensor->resistance_25C_ohm > 0.0f) && nominal_C - sensor->rest_C < 1.0f && sensor->rest_C - nominal_C < 1.0f) {
-    sensor->resistance_25C_ohm = resistance_ohm / (1.0f + @CAP@_RESISTANCE_ALPHA_PER_K * (nominal_C - 25.0f));
+  if (!@_is_between(1e-6f, resistance_ohm, 1e6f)) {
+    return nothing;
   }
-  return sensor->resistance_25C_ohm > 0.0f
+  if (sensor->samples < @CAP@_RESISTANCE_SAMPLES && nominal_C - sensor->rest_C < 1.0f && sensor->rest_C - nominal_C < 1.0f) {
+    const float at_25C_ohm = resistance_ohm / (1.0f + @CAP@_RESISTANCE_ALPHA_PER_K * (nominal_C - 25.0f));
+    sensor->samples += 1;
+    sensor->resistance_25C_ohm += (at_25C_ohm - sensor->resistance_25C_ohm) / (float)sensor->samples;
+  }
+  return sensor->samples >= @CAP@_RESISTANCE_SAMPLES && sensor->resistance_25C_ohm > 0.0f
              ? 25.0f + (resistance_ohm / sensor->resistance_25C_ohm - 1.0f) / @CAP@_RESISTANCE_ALPHA_PER_K
              : nothing;
 }
 
 )";
+
+/// Readings that calibrate the resistance: their mean has a quarter of the noise of one.
+constexpr int kResistanceSamples = 16;
 
 /// A current up to this multiple of the allowed one counts as ripple of the current control.
 constexpr double kRipple_ratio = 1.1;
@@ -332,13 +361,18 @@ std::string constants(const Source& source, const SensorPlan& plan) {
     text += define("RESISTANCE_ALPHA_PER_K", plan.resistance->temperature_coefficient_per_K) +
             define("RESISTANCE_LEAST_CURRENT_A", plan.resistance->least_current_A) +
             define("RESISTANCE_CURRENT_PER_SPEED_A_S_PER_RAD", plan.resistance->current_per_speed_A_s_per_rad) +
-            define("RESISTANCE_MOST_CURRENT_CHANGE_A", std::min(plan.resistance->most_current_change_A, 1e9));
+            define("RESISTANCE_MOST_CURRENT_CHANGE_A", std::min(plan.resistance->most_current_change_A, 1e9)) +
+            fmt::format("#define {}_RESISTANCE_SAMPLES {}\n", source.capital, kResistanceSamples);
   }
   return text + "\n";
 }
 
 std::string comment(const SensorPlan& plan) {
   const Guarantee& checked = plan.guarantee;
+  double most_drop_A = 0.0;
+  for (const LastingCurrent& each : plan.lasting) {
+    most_drop_A = std::max(most_drop_A, each.with_A - each.without_A);
+  }
   return fmt::format(
       "\n"
       "/* With {} at the {} (largest error {:.3g} K{}): safety factor on heat {:.3g} instead of the above while the sensor is used.\n"
@@ -348,14 +382,15 @@ std::string comment(const SensorPlan& plan) {
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
       "drawn\n"
-      " * motors exceed a limit. Options of the sensor:\n"
+      " * motors exceed a limit. A dropped sensor lowers the current at once, under lasting load of the nominal motor by at most {} A.\n"
+      " * Options of the sensor:\n"
       " * {}\n"
       " */\n",
       plan.resistance ? "the resistance from voltage and current" : "a thermistor",
       plan.observer.state_names()[static_cast<std::size_t>(plan.options.node)], plan.options.accuracy_K,
       plan.options.lag_s > 0.0 ? fmt::format(", lag {:.3g} s", plan.options.lag_s) : "", plan.observer.heat_safety_factor(),
-      drawn_motors_text(checked), plan.dropped,
-      plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over, checked.samples, sensor_flags(plan.options));
+      drawn_motors_text(checked), plan.dropped, plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over,
+      checked.samples, significant_above(most_drop_A, 2), sensor_flags(plan.options));
 }
 
 /// The table for the lower safety factor, computed with the same rules.
