@@ -11,6 +11,7 @@
 #include "exported_motor.h"
 #include "fmu_unit.h"
 #include "robot/motor_drive.h"
+#include "select/evaluate.h"
 #include "thermal/transient.h"
 
 namespace heatsoak::derate {

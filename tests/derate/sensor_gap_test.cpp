@@ -12,32 +12,32 @@
 namespace heatsoak::derate {
 namespace {
 
-const CompiledGuard& guard() {
+const CompiledGuard& gap_guard() {
   static const CompiledGuard made(thermistor_derating(), "gaps");
   return made;
 }
 
-constexpr double kPeriod_s = 0.01;
-constexpr double kAir_C = 39.5;
+constexpr double kStep_s = 0.01;
+constexpr double kRoom_C = 39.5;
 constexpr int kWarm = 60'000;  ///< periods until the motor is hot
 
 /// Returns the current that was allowed in each period after the warm-up, always fully used at standstill. `reading(time_s, true_C)` gets
 /// the time since the warm-up, and NaN in place of the reading means none.
 template <class Reading>
-std::vector<double> allowed_A(int periods, const Reading& reading, double speed_rad_per_s = 0.0) {
-  SensedGuard sensed(guard());
-  Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), kAir_C);
-  sensed.start(static_cast<float>(kAir_C));
+std::vector<double> currents_A(int periods, const Reading& reading, double speed_rad_per_s = 0.0) {
+  SensedGuard sensed(gap_guard());
+  Plant plant(ecx_32(), motor::nominal_sample(ecx_32()), kRoom_C);
+  sensed.start(static_cast<float>(kRoom_C));
   std::vector<double> all_A;
   double now_A = 0.0;
   for (int i = 0; i < kWarm + periods; ++i) {
-    plant.step(now_A, speed_rad_per_s, kAir_C, kPeriod_s);
+    plant.step(now_A, speed_rad_per_s, kRoom_C, kStep_s);
     const double true_C = plant.true_C(motor::states::stator);
-    const double shown_C = i < kWarm ? true_C : reading(kPeriod_s * (i - kWarm), true_C);
-    now_A =
-        sensed
-            .step({static_cast<float>(now_A), static_cast<float>(speed_rad_per_s), static_cast<float>(kAir_C)}, static_cast<float>(shown_C))
-            .allowed_A;
+    const double shown_C = i < kWarm ? true_C : reading(kStep_s * (i - kWarm), true_C);
+    now_A = sensed
+                .step({static_cast<float>(now_A), static_cast<float>(speed_rad_per_s), static_cast<float>(kRoom_C)},
+                      static_cast<float>(shown_C))
+                .allowed_A;
     if (i >= kWarm) {
       all_A.push_back(now_A);
     }
@@ -56,7 +56,7 @@ double largest_step_A(const std::vector<double>& all_A) {
 constexpr double kNone_C = std::numeric_limits<double>::quiet_NaN();
 
 TEST(SensedCurrent, MovesSmoothlyThroughGapsInTheReadings) {
-  const auto all_A = allowed_A(3000, [](double time_s, double true_C) { return std::fmod(time_s, 5.0) < 3.8 ? true_C : kNone_C; });
+  const auto all_A = currents_A(3000, [](double time_s, double true_C) { return std::fmod(time_s, 5.0) < 3.8 ? true_C : kNone_C; });
   const auto [least, most] = std::ranges::minmax(all_A);
   RecordProperty("difference_A", std::to_string(most - least));
   RecordProperty("step_A", std::to_string(largest_step_A(all_A)));
@@ -66,8 +66,8 @@ TEST(SensedCurrent, MovesSmoothlyThroughGapsInTheReadings) {
 
 // Never above the current that holds at the time: without readings it ends at the current without a sensor.
 TEST(SensedCurrent, IsNeverAboveThatOfAnUninterruptedSensor) {
-  const auto whole_A = allowed_A(700, [](double, double true_C) { return true_C; });
-  const auto gap_A = allowed_A(700, [](double time_s, double true_C) { return time_s < 1.0 ? true_C : kNone_C; });
+  const auto whole_A = currents_A(700, [](double, double true_C) { return true_C; });
+  const auto gap_A = currents_A(700, [](double time_s, double true_C) { return time_s < 1.0 ? true_C : kNone_C; });
   for (std::size_t i = 0; i < 200; ++i) {
     ASSERT_LE(gap_A[i], whole_A[i] + 0.01) << i;
   }
@@ -84,7 +84,7 @@ TEST(SensedCurrent, FallsAtOnceWhenTheSensorIsDropped) {
   double most_A = 0.0;
   for (const double speed_rad_per_s : {0.0, 400.0}) {
     for (const double shown_C : {50.0, 10.0, 200.0}) {
-      const auto all_A = allowed_A(
+      const auto all_A = currents_A(
           3000, [&](double, double) { return shown_C; }, speed_rad_per_s);
       most_A = std::max(most_A, largest_step_A(all_A));
       for (std::size_t i = 1; i < all_A.size(); ++i) {
