@@ -243,8 +243,8 @@ std::vector<std::string> paragraphs(const simulate::EvaluationAnswer& answer) {
                                              : "nominal values only");
   if (answer.draw_count > 0) {
     first += fmt::format(
-        " Verdict, range and margin cover {} with different inputs and robot parameters; the margin is that of the 95th percentile. Peak "
-        "and curve are those of the game with nominal inputs and this seed.",
+        " Verdict, range and margin (to the 95th percentile) cover {} with different inputs and robot parameters. Peak and curve are those "
+        "of the game with nominal inputs and this seed.",
         counted(results, &select::MotorEvaluation::games, "game"));
   }
   const auto most = std::ranges::max_element(results, {}, &select::MotorEvaluation::samples);
