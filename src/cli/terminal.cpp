@@ -45,6 +45,15 @@ std::size_t terminal_width(int descriptor) {
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? within(size.ws_col) : kUsual;
 }
 
+std::string printable(std::string_view text) {
+  std::string result(text);
+  std::ranges::replace_if(
+      result, [](unsigned char c) { return (c < ' ' && c != '\n' && c != '\t') || c == 0x7f; }, '?');
+  return result;
+}
+
+void put(std::FILE* file, std::string_view text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), file)); }
+
 bool takes_colors(int descriptor) { return isatty(descriptor) == 1 && environment("NO_COLOR").empty() && environment("TERM") != "dumb"; }
 
 namespace {

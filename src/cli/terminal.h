@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "base/job_progress.h"
 
@@ -14,6 +16,12 @@ std::size_t terminal_width(int descriptor);
 
 /// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.
 bool takes_colors(int descriptor);
+
+/// Replaces control characters, which could come from file names and control the terminal, by question marks.
+std::string printable(std::string_view text);
+
+/// Writes to a stream. Never throws: run_program() finds a full disk at the end, and a failing stderr is ignored.
+void put(std::FILE* file, std::string_view text);
 
 /// Shows the progress of a job with its remaining time as one line on stderr, from its first second until the destructor removes the line.
 /// Silent if stderr is not a terminal.

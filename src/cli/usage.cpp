@@ -15,6 +15,9 @@
 #include "input/data_folders.h"
 
 namespace heatsoak::cli {
+
+bool is_output(std::string_view word) { return word == "-" || !word.starts_with('-'); }
+
 namespace {
 
 /// "-3A" is a value, and "-" is an output.

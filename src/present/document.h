@@ -67,7 +67,7 @@ struct Document {
   std::vector<std::string> paragraphs = {};  ///< computed quantities and their inputs
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
-  std::vector<std::string> files = {};     ///< what the command writes; cli::Session fills it for every command
+  std::vector<std::string> files = {};     ///< names of the written files; cli::Session sets them
   std::vector<Listing> listings = {};      ///< shown last
   std::vector<report::Chart> charts = {};  ///< only HTML contains them
   Json data = {};                          ///< the same answer for other programs; begins with the key "schema"

@@ -41,7 +41,7 @@ struct EvaluationJob {
 /// Changes of the robot that cool one of the motors. Another motor is among them only if that one does not pass.
 struct SuggestedChanges {
   std::string motor_id;
-  bool passes = false;  ///< that motor passes without a change
+  bool passes = false;  ///< the motor passes without a change
   std::vector<select::ChangeEffect> effects;
 };
 
