@@ -336,7 +336,7 @@ TEST(EvaluateMatch, a_recording_costs_what_its_match_does) {
 TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {
   const Words line{"evaluate", "--robot", "roboteam_twente_v2024", "--duty", "division_b_match", "--motors", "maxon_ecx_flat_42m_24v"};
   const ProgramRun sampled = run(line + Words{"--samples", "24", "--threads", "2", "--json", "-"});
-  EXPECT_THAT(sampled.err, testing::ContainsRegex("3[ \n]games[ \n]with[ \n]other[ \n]inputs"));
+  EXPECT_THAT(sampled.err, testing::ContainsRegex("3[ \n]games[ \n]with[ \n]different[ \n]inputs"));
   EXPECT_EQ(sampled.json().at("duty_draws"), 3);
   EXPECT_EQ(sampled.out, run(line + Words{"--samples", "24", "--threads", "1", "--json", "-"}).out);
   const ProgramRun nominal = run(line + Words{"--samples", "0", "--json", "-"});
