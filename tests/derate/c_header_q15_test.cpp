@@ -389,10 +389,10 @@ exponent = { value = "0.25", origin = "estimated", derivation = "a test" }
 
 TEST(Q15HeaderText, LinesHaveTheNamesOfTheQuantitiesWithScaleAndUnit) {
   const std::string text = exported("c_header_q15");
-  for (const char* const line :
-       {"const int32_t copper_loss_W = [^;]+; /\\* 2\\^-[0-9]+ W \\*/", "const int32_t winding_C = state_C\\[0\\]; /\\* 2\\^-20 degC \\*/",
-        "const int32_t winding_to_stator_W = [^;]+; /\\* 2\\^-[0-9]+ W \\*/",
-        "const int32_t winding_rate_K_per_s = [^;]+; /\\* 2\\^-[0-9]+ K/s \\*/"}) {
+  for (const char* const line : {"const int32_t copper_loss_W = [^;]+;\\s+/\\* 2\\^-[0-9]+ W \\*/",
+                                 "const int32_t winding_C = state_C\\[0\\]; /\\* 2\\^-20 degC \\*/",
+                                 "const int32_t winding_to_stator_W = [^;]+;\\s+/\\* 2\\^-[0-9]+ W \\*/",
+                                 "const int32_t winding_rate_K_per_s = [^;]+;\\s+/\\* 2\\^-[0-9]+ K/s \\*/"}) {
     EXPECT_TRUE(std::regex_search(text, std::regex(line))) << line;
   }
   EXPECT_FALSE(std::regex_search(text, std::regex("\\bt[0-9]+\\b"))) << "names of steps of the formula";

@@ -32,7 +32,8 @@ std::string toned(const std::string& text, Tone tone, bool with_colors) {
 
 std::string head_of(const Column& column) { return column.unit.empty() ? column.name : fmt::format("{} {}", column.name, column.unit); }
 
-/// Prose of several lines goes below its row if the other columns leave a smaller share of the width.
+/// Prose of several lines goes below its row if the other columns leave fewer characters or a smaller share of the width.
+constexpr std::size_t kLeastProse = 28;
 constexpr double kLeastProse_share = 0.5;
 constexpr std::size_t kProseIndent = 4;
 
@@ -147,7 +148,8 @@ std::string with_prose(const std::string& line, std::size_t used, const std::str
   }
   const std::size_t place = used + (used > 0 ? kGap : 0);
   const std::size_t left = width - std::min(place, width);
-  const bool is_wide = static_cast<double>(left) >= kLeastProse_share * static_cast<double>(width) && longest_word(prose) <= left;
+  const std::size_t least = std::max(kLeastProse, static_cast<std::size_t>(kLeastProse_share * static_cast<double>(width)));
+  const bool is_wide = left >= std::max(least, longest_word(prose));
   if (place == 0 || is_wide || width_of(prose) <= left) {
     const std::string beside = wrapped(prose, std::string(place, ' '), width);
     return line + beside.substr(used) + "\n";
