@@ -56,9 +56,9 @@ void set_possible(Limit& limit, const base::Range& possible) {
   own->type.unit = own->unit;
   own->type.example = own->example;
   own->type.range = possible;
-  if (own->type.direction == Bound::at_least && std::isfinite(possible.low)) {
+  if (own->type.direction == Bound::at_least && possible.low == 0.0) {
     own->type.loosest = [](const Check&) -> std::optional<LoosestLimit> { return LoosestLimit{0.0, LoosestBy::smallest_value, true}; };
-  } else if (own->type.direction == Bound::at_most && std::isfinite(possible.high)) {
+  } else if (own->type.direction == Bound::at_most && possible.high == 1.0) {
     own->type.loosest = [](const Check&) -> std::optional<LoosestLimit> { return largest_share_limit(); };
   }
   limit.type = &own->type;

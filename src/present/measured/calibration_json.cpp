@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/number_ranges.h"
+#include "calibration/written_forecast.h"
 #include "present/measured/calibration.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
@@ -55,13 +56,18 @@ Json calibration_json(const motor::Motor& motor, const calibration::CalibrationA
   const calibration::Calibration& result = answer.calibration;
   Json parameters = Json::array();
   for (const calibration::CalibratedParameter& each : result.parameters) {
-    parameters.push_back({{"name", each.name},
-                          {"value", number(each.value)},
-                          {"unit", each.unit},
-                          {"ci95", {number(each.low), number(each.high)}},
-                          {"identifiable", each.is_identifiable},
-                          {"before", number(each.before)},
-                          {"interval", each.by_profile ? "profile_likelihood" : "curvature"}});
+    Json parameter{{"name", each.name},
+                   {"value", number(each.value)},
+                   {"unit", each.unit},
+                   {"ci95", {number(each.low), number(each.high)}},
+                   {"identifiable", each.is_identifiable},
+                   {"before", number(each.before)},
+                   {"interval", each.by_profile ? "profile_likelihood" : "curvature"}};
+    if (calibration::possible_range(answer.motor, each.name).low >= 0.0) {
+      parameter = base::with_ranges(std::move(parameter),
+                                    {{"value", base::kNotNegative}, {"ci95", base::kNotNegative}, {"before", base::kNotNegative}});
+    }
+    parameters.push_back(std::move(parameter));
   }
   Json open = Json::array();
   for (const calibration::OpenDirection& each : result.open) {
