@@ -117,7 +117,7 @@ TEST_P(Completion, offers_every_verb) {
 }
 
 TEST_P(Completion, offers_options_and_their_words) {
-  EXPECT_THAT(completed("heatsoak evaluate --mo"), UnorderedElementsAre("--model", "--motors"));
+  EXPECT_THAT(completed("heatsoak evaluate --mo"), UnorderedElementsAre("--model", "--motor", "--motors"));
   EXPECT_THAT(completed("heatsoak duty --planner "), UnorderedElementsAre("bang_bang", "jerk_limited"));
   EXPECT_THAT(completed("heatsoak derate --to c_h"), UnorderedElementsAre("c_header", "c_header_q15"));
   EXPECT_THAT(completed("heatsoak generate c"), UnorderedElementsAre("core"));
@@ -141,6 +141,9 @@ TEST_P(Completion, offers_files_where_no_name_matches) {
 
 TEST_P(Completion, completes_the_last_name_of_a_list) {
   EXPECT_THAT(completed("heatsoak evaluate --motors al"), UnorderedElementsAre("all"));
+  EXPECT_THAT(completed("heatsoak evaluate --motor al"), UnorderedElementsAre("all")) << "another name of --motors";
+  EXPECT_THAT(completed("heatsoak evaluate --motor maxon_ecx_flat_32l_48v,nanotec_df45l024048"),
+              UnorderedElementsAre("nanotec_df45l024048_a2"));
   EXPECT_THAT(completed("heatsoak evaluate --motors maxon_ecx_flat_32l_48v,nanotec_df45l024048"),
               UnorderedElementsAre("nanotec_df45l024048_a2"));
 }

@@ -13,30 +13,56 @@
 namespace heatsoak::cli::commands {
 namespace {
 
+/// Returns all long names of an option; none of a word without option.
+std::vector<std::string> long_names(const HelpOption& option) {
+  std::vector<std::string> names;
+  std::ranges::copy_if(option.names, std::back_inserter(names), [](const std::string& name) { return name.starts_with("--"); });
+  return names;
+}
+
+bool has_name(const HelpOption& option, std::string_view name) { return std::ranges::find(option.names, name) != option.names.end(); }
+
 /// Returns the kind of value of an option or of a word without option. The shell asks the program for the names each time the user
 /// completes a word.
-std::string_view kind_of(std::string_view verb, const std::string& option) {
-  return option == "--motor" || option == "--motors"      ? "motors"
-         : option == "--robot"                            ? "robots"
-         : option == "--duty"                             ? "duties"
-         : verb == "describe" && !option.starts_with('-') ? "topics"
-                                                          : "";
+std::string_view kind_of(std::string_view verb, const HelpOption& option) {
+  return has_name(option, "--motor") || has_name(option, "--motors") ? "motors"
+         : has_name(option, "--robot")                               ? "robots"
+         : has_name(option, "--duty")                                ? "duties"
+         : verb == "describe" && long_names(option).empty()          ? "topics"
+                                                                     : "";
 }
 
 /// Returns whether the option takes names separated by commas, or "all".
-bool takes_list(std::string_view option) { return option == "--motors"; }
+bool takes_list(const HelpOption& option) { return has_name(option, "--motors"); }
 
 /// Returns the pages with the output formats of `derate`, which the help leaves to `list formats`.
 std::vector<HelpPage> pages_with_formats(std::vector<HelpPage> pages) {
   for (HelpPage& page : pages) {
     for (HelpOption& option : page.options) {
-      if (page.verb == "derate" && option.names.back() == "--to") {
+      if (page.verb == "derate" && has_name(option, "--to")) {
         std::ranges::transform(derate::all_exporters(), std::back_inserter(option.choices),
                                [](const derate::ExporterType& each) { return std::string(each.name); });
       }
     }
   }
   return pages;
+}
+
+/// Returns the cases of the values that follow each of the words `before`.
+std::string bash_values(std::string_view verb, const HelpOption& option, const std::vector<std::string>& before) {
+  const std::string_view kind = kind_of(verb, option);
+  if (option.choices.empty() && kind.empty()) {
+    return "";
+  }
+  const std::string values = !option.choices.empty()
+                                 ? fmt::format("words='{}'", fmt::join(option.choices, " "))
+                                 : fmt::format("words=\"{}$(heatsoak list {} --quiet 2>/dev/null)\"{}", takes_list(option) ? "all " : "",
+                                               kind, takes_list(option) ? " list=1" : "");
+  std::string cases;
+  for (const std::string& word : before) {
+    cases += fmt::format("    {}:{}) {} ;;\n", verb, word, values);
+  }
+  return cases;
 }
 
 std::string bash_script(const std::vector<HelpPage>& pages) {
@@ -47,17 +73,10 @@ std::string bash_script(const std::vector<HelpPage>& pages) {
     verbs.push_back(page.verb);
     std::vector<std::string> words;
     for (const HelpOption& option : page.options) {
-      words.push_back(option.names.back());
-      const std::string before = option.names.back().starts_with("--") ? option.names.back() : page.verb;
-      const std::string_view kind = kind_of(page.verb, option.names.back());
-      if (!option.choices.empty()) {
-        values += fmt::format("    {}:{}) words='{}' ;;\n", page.verb, before, fmt::join(option.choices, " "));
-      } else if (!kind.empty()) {
-        values += fmt::format("    {}:{}) words=\"{}$(heatsoak list {} --quiet 2>/dev/null)\"{} ;;\n", page.verb, before,
-                              takes_list(before) ? "all " : "", kind, takes_list(before) ? " list=1" : "");
-      }
+      const std::vector<std::string> names = long_names(option);
+      std::ranges::copy(names, std::back_inserter(words));
+      values += bash_values(page.verb, option, names.empty() ? std::vector{page.verb} : names);
     }
-    std::erase_if(words, [](const std::string& word) { return !word.starts_with("--"); });
     cases += fmt::format("    {}) words='{}' ;;\n", page.verb, fmt::join(words, " "));
   }
   return fmt::format(R"bash(# bash completion of heatsoak: source <(heatsoak completion)
@@ -93,10 +112,10 @@ std::string zsh_value(std::string_view verb, const HelpOption& option) {
   if (!option.takes_value) {
     return "";
   }
-  const std::string_view kind = kind_of(verb, option.names.back());
+  const std::string_view kind = kind_of(verb, option);
   const std::string action = !option.choices.empty() ? fmt::format("({})", fmt::join(option.choices, " "))
                              : kind.empty()          ? "_files"
-                                            : fmt::format("{{_heatsoak_{} {}}}", takes_list(option.names.back()) ? "list" : "name", kind);
+                                                     : fmt::format("{{_heatsoak_{} {}}}", takes_list(option) ? "list" : "name", kind);
   return fmt::format(":value:{}", action);
 }
 
@@ -107,10 +126,14 @@ std::string zsh_script(const std::vector<HelpPage>& pages) {
     verbs += fmt::format("    '{}:{}'\n", page.verb, zsh_quoted(page.summary));
     cases += fmt::format("    {}) _arguments", page.verb);
     for (const HelpOption& option : page.options) {
-      if (option.names.back().starts_with("--")) {
-        cases += fmt::format(" \\\n      '{}{}[{}]{}'", option.names.back(), option.takes_value ? "=" : "", zsh_quoted(option.meaning),
+      const std::vector<std::string> names = long_names(option);
+      // The list in parentheses excludes the other names once one of them is on the line.
+      const std::string exclusive = names.size() > 1 ? fmt::format("({})", fmt::join(names, " ")) : "";
+      for (const std::string& name : names) {
+        cases += fmt::format(" \\\n      '{}{}{}[{}]{}'", exclusive, name, option.takes_value ? "=" : "", zsh_quoted(option.meaning),
                              zsh_value(page.verb, option));
-      } else if (!option.choices.empty() || !kind_of(page.verb, option.names.back()).empty()) {
+      }
+      if (names.empty() && (!option.choices.empty() || !kind_of(page.verb, option).empty())) {
         cases += fmt::format(" \\\n      '1{}'", zsh_value(page.verb, option));
       }
     }
@@ -176,17 +199,21 @@ end
   for (const HelpPage& page : pages) {
     text += fmt::format("complete -c heatsoak -n __fish_use_subcommand -f -a {} -d '{}'\n", page.verb, fish_quoted(page.summary));
     for (const HelpOption& option : page.options) {
-      const std::string_view kind = kind_of(page.verb, option.names.back());
+      const std::string_view kind = kind_of(page.verb, option);
       const std::string values = !option.choices.empty() ? fmt::format(" -f -a '{}'", fmt::join(option.choices, " "))
-                                 : kind.empty()
-                                     ? ""
-                                     : fmt::format(" -f -a '(__heatsoak_{} {})'", takes_list(option.names.back()) ? "list" : "names", kind);
-      if (!option.names.back().starts_with("--")) {
+                                 : kind.empty()          ? ""
+                                                : fmt::format(" -f -a '(__heatsoak_{} {})'", takes_list(option) ? "list" : "names", kind);
+      const std::vector<std::string> names = long_names(option);
+      if (names.empty()) {
         text += values.empty() ? "" : fmt::format("complete -c heatsoak -n '__heatsoak_verb_is {}'{}\n", page.verb, values);
         continue;
       }
-      text += fmt::format("complete -c heatsoak -n '__heatsoak_verb_is {}' -l {} -d '{}'{}{}\n", page.verb, option.names.back().substr(2),
-                          fish_quoted(option.meaning), option.takes_value ? " -r" : "", values);
+      std::string flags;
+      for (const std::string& name : names) {
+        flags += fmt::format(" -l {}", name.substr(2));
+      }
+      text += fmt::format("complete -c heatsoak -n '__heatsoak_verb_is {}'{} -d '{}'{}{}\n", page.verb, flags, fish_quoted(option.meaning),
+                          option.takes_value ? " -r" : "", values);
     }
   }
   return text;
