@@ -49,12 +49,20 @@ bool is_symbol(std::string_view word) {
 
 }  // namespace
 
-std::optional<UnitOfName> unit_of_name(std::string_view name) {
-  if (const auto* const all = std::ranges::find(kUnitWords, name, &UnitWord::word); all != kUnitWords.end() && all->unit.empty()) {
-    return UnitOfName{};
+namespace {
+
+std::optional<UnitWord> unit_word(std::string_view word, UnitText unit_text, bool is_first_of_product) {
+  const std::optional<std::string_view> text = unit_text != nullptr ? unit_text(word) : std::nullopt;
+  if (const auto* const known = std::ranges::find(kUnitWords, word, &UnitWord::word); known != kUnitWords.end()) {
+    return UnitWord{word, text.value_or(known->unit), known->si};
   }
+  return text && is_first_of_product ? std::optional(UnitWord{word, *text, {}}) : std::nullopt;
+}
+
+std::optional<UnitOfName> unit_at_end(std::string_view name, UnitText unit_text) {
   std::string_view rest = name;
   Product current;  // words behind the last "per" that was read
+  bool is_complete = false;
   std::string below;
   double offset_K = 0.0;
   UnitOfName result;
@@ -65,9 +73,10 @@ std::optional<UnitOfName> unit_of_name(std::string_view name) {
       below = below.empty() ? divisor.unit : fmt::format("{} {}", divisor.unit, below);
       multiply(result.si, divisor.si, -1);
       offset_K = 0.0;
+      is_complete = false;
     } else {
-      const auto* const word = std::ranges::find(kUnitWords, last, &UnitWord::word);
-      if (word == kUnitWords.end() || (word->unit.empty() && rest.size() < name.size())) {
+      const std::optional<UnitWord> word = unit_word(last, unit_text, current.unit.empty());
+      if (!word || is_complete || (word->unit.empty() && rest.size() < name.size())) {
         break;
       }
       if (word->unit.empty()) {
@@ -75,6 +84,8 @@ std::optional<UnitOfName> unit_of_name(std::string_view name) {
       }
       current.put_before(*word);
       offset_K = rest.size() == name.size() ? word->si.offset_K : 0.0;
+      // A product has no unit with an offset: "phase_A_C" is in degC.
+      is_complete = word->si.offset_K != 0.0 || std::ranges::find(kUnitWords, last, &UnitWord::word) == kUnitWords.end();
     }
     rest.remove_suffix(rest.size() - mark);
   }
@@ -86,6 +97,20 @@ std::optional<UnitOfName> unit_of_name(std::string_view name) {
   result.quantity = rest;
   result.unit = quotient(current.unit, below);
   return result;
+}
+
+}  // namespace
+
+std::optional<UnitOfName> unit_of_name(std::string_view name) {
+  if (const auto* const all = std::ranges::find(kUnitWords, name, &UnitWord::word); all != kUnitWords.end() && all->unit.empty()) {
+    return UnitOfName{};
+  }
+  return unit_at_end(name, nullptr);
+}
+
+std::optional<std::string> unit_text_of_name(std::string_view name, UnitText unit_text) {
+  const std::optional<UnitOfName> found = unit_at_end(name, unit_text);
+  return found ? std::optional(found->unit) : std::nullopt;
 }
 
 bool is_number_with_unit(std::string_view before, std::string_view behind) {

@@ -74,6 +74,12 @@ struct UnitOfName {
 /// is the quantity ("a_V" is in V), unless a pure number is all of the name: "share".
 std::optional<UnitOfName> unit_of_name(std::string_view name);
 
+/// Returns the UDUNITS text of a word in place of that of kUnitWords, or of a unit that kUnitWords lacks; nothing for any other word.
+using UnitText = std::optional<std::string_view> (*)(std::string_view word);
+/// Reads the same units and further ones, and returns the text alone. A further unit is a whole dividend or divisor, as in "flow_m3_per_s":
+/// the word before it belongs to the quantity. Returns nothing if the unit is all of the name.
+std::optional<std::string> unit_text_of_name(std::string_view name, UnitText unit_text);
+
 /// Returns whether text with a blank between `before` and `behind` has a number there with its unit: "20" and "K", "3.5" and "m/s², …".
 /// Such a blank is no place for a line break.
 bool is_number_with_unit(std::string_view before, std::string_view behind);

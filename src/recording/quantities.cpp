@@ -9,6 +9,7 @@
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "base/unit_names.h"
 
 namespace heatsoak::recording {
 namespace {
@@ -77,13 +78,6 @@ constexpr std::array kTypes = [] {
   return types;
 }();
 
-/// Endings that UDUNITS-2 spells differently or interprets differently (C is coulomb there).
-struct Ending {
-  std::string_view name;
-  std::string_view unit;
-};
-constexpr std::array kEndings{Ending{"C", "degC"}, Ending{"ratio", ""}, Ending{"share", ""}, Ending{"percent", "%"}, Ending{"pct", "%"}};
-
 std::string_view without_number(std::string_view key) {
   const std::size_t end = key.find_last_not_of("0123456789");
   const bool is_numbered = end != std::string_view::npos && end + 1 < key.size() && key[end] == '_' && key[end + 1] != '0';
@@ -94,48 +88,27 @@ Quantity quantity_of(const QuantityType& type, std::string_view key) {
   return {std::string(key), type.kind, std::string(type.unit), type.possible, std::string(type.meaning)};
 }
 
-std::vector<std::string_view> words_of(std::string_view key) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = 0; begin <= key.size();) {
-    const std::size_t end = std::min(key.find('_', begin), key.size());
-    words.push_back(key.substr(begin, end - begin));
-    begin = end + 1;
+/// Returns the units that logs use besides those of base::kUnitWords: percentages and all of UDUNITS-2. A power or product is written as in
+/// the name, "s2" or "Nm".
+std::optional<std::string_view> unit_text(std::string_view word) {
+  const auto* const known = std::ranges::find(base::kUnitWords, word, &base::UnitWord::word);
+  if (known != base::kUnitWords.end()) {
+    return known->unit.find_first_of("^ ") == std::string_view::npos ? std::nullopt : std::optional(word);
   }
-  return words;
+  if (word == "percent" || word == "pct") {
+    return "%";
+  }
+  const bool is_symbol = !word.empty() && std::isalpha(static_cast<unsigned char>(word[0])) != 0;
+  return is_symbol && base::parse_quantity(fmt::format("1 {}", word), word).ok() ? std::optional(word) : std::nullopt;
 }
 
 /// Returns the unit at the end of a name, for example "rad/s" for "…_rad_per_s". nullopt if there is none.
 std::optional<std::string> unit_at_end(std::string_view key) {
-  const std::vector<std::string_view> words = words_of(key);
-  if (words.size() < 2 || std::ranges::any_of(words, &std::string_view::empty)) {
+  if (key.starts_with('_') || key.find("__") != std::string_view::npos) {
     return std::nullopt;
   }
-  for (const Ending& ending : kEndings) {
-    if (words.back() == ending.name && words[words.size() - 2] != "per") {
-      return std::string(ending.unit);
-    }
-  }
-  std::size_t first = words.size() - 1;
-  while (first >= 2 && words[first - 1] == "per") {
-    first -= 2;
-  }
-  first -= first >= 2 && words[first] == "m2" && words[first - 1] == "kg" ? 1 : 0;
-  if (first == 0) {
-    return std::nullopt;
-  }
-  std::string unit;
-  for (std::size_t i = first; i < words.size(); ++i) {
-    if (words[i] == "per") {
-      unit += '/';
-      continue;
-    }
-    if (i > first && words[i - 1] != "per") {
-      unit += ' ';
-    }
-    unit += words[i];
-  }
-  const bool is_symbol = std::isalpha(static_cast<unsigned char>(unit[0])) != 0;
-  return is_symbol && base::parse_quantity("1 " + unit, unit).ok() ? std::optional(unit) : std::nullopt;
+  const std::optional<std::string> unit = base::unit_text_of_name(key, unit_text);
+  return unit && base::parse_quantity("1 " + *unit, *unit).ok() ? unit : std::nullopt;
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ TEST(UnitOfName, IsReadFromItsLastWords) {
   EXPECT_EQ(unit("heat_J_per_kg_per_K"), "J/(kg K)");
   EXPECT_EQ(unit("damping_V_s_per_rad"), "V s/rad");
   EXPECT_EQ(unit("a_V"), "V");
+  EXPECT_EQ(unit("phase_A_C"), "degC") << "a temperature is no factor of a product";
   EXPECT_EQ(unit("winding_per_stator_K"), "K");
   EXPECT_EQ(unit("delivered_share"), "") << "a pure number";
   EXPECT_EQ(unit("stator_C_share"), "") << "a share of something with a unit";

@@ -24,6 +24,12 @@ TEST(Quantities, NamesTellTheirUnits) {
   EXPECT_EQ(unit_of("resistance_K_per_W"), "K/W");
   EXPECT_EQ(unit_of("valve_ratio"), "");
   EXPECT_EQ(unit_of("duty_pct"), "%");
+  EXPECT_EQ(unit_of("pressure_kPa"), "kPa") << "any unit of UDUNITS-2";
+  EXPECT_EQ(unit_of("phase_a_A"), "A") << "not ampere-years";
+  EXPECT_EQ(unit_of("phase_A_C"), "degC") << "a temperature is no factor of a product";
+  EXPECT_EQ(unit_of("conductance_W_per_m2_K"), "W/(m2 K)");
+  EXPECT_EQ(unit_of("coefficient_per_K"), "1/K");
+  EXPECT_EQ(unit_of("acceleration_m_per_s2"), "m/s2");
   for (const char* key : {"comment", "winding", "C", "_C", "a__C", "time", "motor_speed_fast", "wheel_1", "x_2", ""}) {
     EXPECT_EQ(unit_of(key), "none") << key;
   }
