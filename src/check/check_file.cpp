@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "base/air_range.h"
 #include "check/command_answers.h"
 #include "check/limit.h"
 #include "check/number_limit.h"
@@ -202,7 +203,7 @@ class CheckReader {
     }
     check_.temperature_C = table_.quantity(
         {"temperature", "degC", base::Range::between(-60.0, 1000.0), "temperature above which time is counted"}, input::Need::optional);
-    check_.air_C = table_.quantity({"air", "degC", base::Range::between(-60.0, 200.0), "air temperature of a log that has none"},
+    check_.air_C = table_.quantity({"air", "degC", base::kPossibleAir_C, "air temperature of a log that has none"},
                                    input::Need::optional);
   }
 

@@ -1,13 +1,13 @@
 #include "derate/option_quantities.h"
 
+#include "base/air_range.h"
+
 namespace heatsoak::derate {
 
 std::vector<OptionQuantity> option_quantities(DerateOptions& options) {
   return {
-      {{"ambient", "degC", base::Range::between(-40.0, 120.0), "hottest air at the motor; 40degC unless given"},
-       &options.hottest_ambient_C},
-      {{"coldest", "degC", base::Range::between(-60.0, 120.0),
-        "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"},
+      {{"ambient", "degC", base::kPossibleAir_C, "hottest air at the motor; 40degC unless given"}, &options.hottest_ambient_C},
+      {{"coldest", "degC", base::kPossibleAir_C, "coldest air; a sensor that reads less is treated as faulty; 0degC unless given"},
        &options.coldest_ambient_C},
       {{"approach", "s", base::Range::between(0.01, 100.0),
         "time in which the winding approaches its limit under full use; a shorter time allows higher peaks of a cold winding, a longer one "

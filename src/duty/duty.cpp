@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/air_range.h"
 #include "duty/shapes_registry.h"
 #include "input/document.h"
 
@@ -77,7 +78,7 @@ Duty read_duty(const std::filesystem::path& path) {
   duty.summary = top.text("summary", input::Need::required).value_or("");
   duty.origin = top.text("origin", input::Need::required).value_or("");
   duty.notes = top.texts("notes", input::Need::optional);
-  duty.ambient_C = top.parameter({"ambient", "degC", base::Range::between(-40.0, 100.0), "air around the motor"}, input::Need::required)
+  duty.ambient_C = top.parameter({"ambient", "degC", base::kPossibleAir_C, "air around the motor"}, input::Need::required)
                        .value_or(base::ParameterValue{});
   std::vector<std::string_view> names;
   for (const ShapeType& shape : all_shapes()) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "base/air_range.h"
 #include "cli/command.h"
 #include "cli/condition_option.h"
 #include "cli/quantity_option.h"
@@ -53,7 +54,7 @@ Command steady() {
                          {"time-off", "s", base::Range::between(0.0, 1e9), "time of a cycle without current"})
                 ->required();
             add_quantity(app, "--ambient", options->current.ambient_C,
-                         {"ambient", "degC", base::Range::between(-60.0, 200.0), "temperature of the air; 25degC unless given"});
+                         {"ambient", "degC", base::kPossibleAir_C, "temperature of the air; 25degC unless given"});
             session.add_data_option(app);
             session.add_answer_options(app);
             return [options, &session] { return run(*options, session); };
