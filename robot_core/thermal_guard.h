@@ -16,12 +16,12 @@ namespace robot_core {
 /// Input signals of a thermal law, in the order of the generated code, whose fields have these names.
 #define ROBOT_CORE_GUARD_SIGNALS(SIGNAL)                                                                             \
   SIGNAL(current_A)               /* equivalent DC current, RMS over the guard period; positive: drives */           \
-  SIGNAL(speed_rad_per_s)         /* speed of the motor shaft, signed */                                             \
-  SIGNAL(ambient_C)               /* temperature of the air around the motor */                                      \
+  SIGNAL(speed_rad_per_s)         /* speed of the motor's shaft, signed */                                           \
+  SIGNAL(ambient_C)               /* air around the motor */                                                         \
   SIGNAL(vehicle_speed_m_per_s)   /* speed of the robot through the air */                                           \
-  SIGNAL(neighbour_C)             /* temperature of the hottest neighbouring motor */                                \
+  SIGNAL(neighbour_C)             /* temperature of the motor next to this one; the core uses the hottest one */     \
   SIGNAL(age_h)                   /* operating hours of the motor */                                                 \
-  SIGNAL(acceleration_rad_per_s2) /* magnitude of dω/dt of the motor shaft, mean over the guard period */
+  SIGNAL(acceleration_rad_per_s2) /* magnitude of dω/dt of the motor's shaft, mean over the guard period */
 
 /// guard_current_A, guard_speed_rad_per_s, …
 enum GuardSignal : int {

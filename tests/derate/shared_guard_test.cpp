@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/source_text.h"
+#include "derate/observer.h"
 #include "exported_motor.h"
 
 namespace heatsoak::derate {
@@ -43,6 +44,23 @@ INSTANTIATE_TEST_SUITE_P(Files, SharedText,
                          testing::Values("robot_core/crc_32.h", "robot_core/current_table.h", "robot_core/thermal_math.h",
                                          "src/derate/integer_form/integer_table.h"),
                          [](const auto& instance) { return fs::path(instance.param).stem().string(); });
+
+/// Returns the meaning itself, without sign convention and substitute.
+std::string first_clause(std::string_view meaning) {
+  const std::string_view clause = meaning.substr(0, meaning.find_first_of(",;("));
+  return std::string(clause.substr(0, clause.find_last_not_of(' ') + 1));
+}
+
+// robot_core cannot include the table of signals, so its comments repeat the meanings.
+TEST(GuardSignals, MeanTheSameInTheDriveCoreAsInTheTable) {
+  const std::string text = content_of(kSource / "robot_core/thermal_guard.h");
+  for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
+    const base::FirmwareInput& input = observed::firmware_of(i);
+    std::smatch comment;
+    ASSERT_TRUE(std::regex_search(text, comment, std::regex(fmt::format("SIGNAL\\({}\\) */\\* ([^*]*)\\*/", input.field)))) << input.field;
+    EXPECT_EQ(first_clause(comment[1].str()), first_clause(input.meaning)) << input.field;
+  }
+}
 
 class TwoHeaders : public testing::Test {
  protected:
