@@ -67,7 +67,8 @@ std::string in_words(const std::string& line) {
 
 /// Returns "path:line: word" of each word left behind.
 std::string words_in(const std::string& text, const std::string& path) {
-  static const std::regex kInputSignal("\\bdrivers?_of");  // as separate words, "driver of" may be a motor driver
+  // Names of the selected input signal of a curve. As separate words, "driver of" may be a motor driver.
+  static const std::regex kInputSignal(R"(\bdrivers?_of|\b(?:chosen|value_of)_driver\b|\bdriver_count\b|\bkDrivers\b)");
   std::string places;
   int line = 1;
   for (std::size_t begin = 0; begin < text.size(); ++line) {
@@ -118,6 +119,11 @@ TEST(Vocabulary, planted_words_are_found) {
 TEST(Vocabulary, planted_parts_of_identifiers_are_found) {
   EXPECT_EQ(words_in("bool is_told_; report.tell();\nclass TimeDriver;\nkFigureCount, drivers_of(), driver of", "x"),
             "x:1: told\nx:1: tell\nx:2: Time Driver\nx:3: Figure\nx:3: drivers_of\n");
+}
+
+TEST(Vocabulary, planted_names_of_input_signals_are_found) {
+  EXPECT_EQ(words_in("int chosen_driver;\nkDrivers[driver_count]\nvalue_of_driver(x); make_driver(); kDriverLimit", "x"),
+            "x:1: chosen_driver\nx:2: kDrivers\nx:2: driver_count\nx:3: value_of_driver\n");
 }
 
 TEST(Vocabulary, names_that_files_keep_are_no_words_left_behind) {

@@ -7,7 +7,7 @@ namespace heatsoak::thermal::effects {
 namespace {
 
 enum Node { hot, cold, watched, reference };
-enum Parameter { driver, form, first_knot, last_knot, first_value };
+enum Parameter { input, form, first_knot, last_knot, first_value };
 constexpr int kKnots = 7;
 
 /// Input signals that are no single quantity; they follow the others.
@@ -17,10 +17,10 @@ enum Regressor {
   temperature_difference,
   neighbour_difference,
   column,
-  driver_count = column + kLogColumns
+  input_count = column + kLogColumns
 };
-constexpr std::array<base::Choice, driver_count> kDrivers = [] {
-  std::array<base::Choice, driver_count> choices{};
+constexpr std::array<base::Choice, input_count> kInputs = [] {
+  std::array<base::Choice, input_count> choices{};
   for (std::size_t i = 0; i < base::kCurveSignalCount; ++i) {
     const base::SignalRow& row = base::kSignals[base::kCurveSignals[i]];
     choices[i] = {row.name, row.unit, row.curve_meaning};
@@ -38,7 +38,7 @@ constexpr std::array<base::Choice, driver_count> kDrivers = [] {
   return choices;
 }();
 constexpr int speed = 0;
-static_assert(kDrivers[speed].name == "speed");
+static_assert(kInputs[speed].name == "speed");
 
 enum Form { heat_into, per_copper_loss, per_difference, per_current, per_speed };
 constexpr std::array kForms{
@@ -50,9 +50,9 @@ constexpr std::array kForms{
 };
 
 template <class S>
-S value_of_driver(const Situation<S>& x) {
-  const int chosen_driver = chosen(x.parameter(driver));
-  switch (chosen_driver) {
+S value_of_input(const Situation<S>& x) {
+  const int chosen_input = chosen(x.parameter(input));
+  switch (chosen_input) {
     case current_speed_squared:
       return x.at.current_rms_A * x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s;
     case temperature:
@@ -62,10 +62,10 @@ S value_of_driver(const Situation<S>& x) {
     case neighbour_difference:
       return x.at.knows(kNeighbour) ? S(x.at.neighbour_C - x.temperature_C(watched)) : S(0.0);
     default:
-      if (chosen_driver >= column) {
-        return x.at.*kQuantities<S>[column_row(static_cast<std::size_t>(chosen_driver - column))].value;
+      if (chosen_input >= column) {
+        return x.at.*kQuantities<S>[column_row(static_cast<std::size_t>(chosen_input - column))].value;
       }
-      return x.at.*kQuantities<S>[base::kCurveSignals[static_cast<std::size_t>(chosen_driver)]].value;
+      return x.at.*kQuantities<S>[base::kCurveSignals[static_cast<std::size_t>(chosen_input)]].value;
   }
 }
 
@@ -86,13 +86,13 @@ struct Tabulated {
     constexpr double kLast = kKnots - 1;
     constexpr double kNoSpan = 1e-30;  // avoids 0/0 if the first and last knot coincide; the curve is then its first value
     const S span = x.parameter(last_knot) - x.parameter(first_knot);
-    const S place = kLast * (value_of_driver(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan);
+    const S place = kLast * (value_of_input(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan);
     const S within = kLast - positive_part(kLast - positive_part(place));
     S curve = x.parameter(first_value) * positive_part(1.0 - within);
     for (int knot = 1; knot < kKnots; ++knot) {
       curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
     }
-    if (const int own = chosen(x.parameter(driver)) - column; own >= 0 && !x.at.knows(column_bit(static_cast<std::size_t>(own)))) {
+    if (const int own = chosen(x.parameter(input)) - column; own >= 0 && !x.at.knows(column_bit(static_cast<std::size_t>(own)))) {
       curve = hottest(x);
     }
     switch (chosen(x.parameter(form))) {
@@ -117,13 +117,13 @@ struct Tabulated {
 /// Signals of the input signal, plus those of the form.
 std::vector<Signal> needs_of(std::span<const double> values) {
   static const std::array<std::vector<Signal>, kForms.size()> kOfForm{{{}, {Signal::current}, {}, {Signal::current}, {Signal::speed}}};
-  const auto chosen_driver = static_cast<std::size_t>(values[driver]);
+  const auto chosen_input = static_cast<std::size_t>(values[input]);
   std::vector<Signal> needed;
-  if (chosen_driver < base::kCurveSignalCount) {
-    needed = {base::kSignals[base::kCurveSignals[chosen_driver]].signal.value()};
-  } else if (chosen_driver == current_speed_squared) {
+  if (chosen_input < base::kCurveSignalCount) {
+    needed = {base::kSignals[base::kCurveSignals[chosen_input]].signal.value()};
+  } else if (chosen_input == current_speed_squared) {
     needed = {Signal::current, Signal::speed};
-  } else if (chosen_driver == neighbour_difference) {
+  } else if (chosen_input == neighbour_difference) {
     needed = {Signal::neighbour_temperature};
   }
   const std::vector<Signal>& besides = kOfForm[static_cast<std::size_t>(values[form])];
@@ -141,10 +141,10 @@ std::vector<Signal> all_signals() {
 
 std::vector<base::ParameterSpec> parameters() {
   std::vector<base::ParameterSpec> specs{
-      base::ParameterSpec::choice("driver", kDrivers, "input signal of the curve"),
+      base::ParameterSpec::choice("driver", kInputs, "input signal of the curve"),
       base::ParameterSpec::choice("form", kForms, "meaning of the curve's values"),
-      {"first_knot", "", base::Range::any(), "input signal at value_1", {}, driver},
-      {"last_knot", "", base::Range::any(), "input signal at value_7; the others are evenly spaced between", {}, driver}};
+      {"first_knot", "", base::Range::any(), "input signal at value_1", {}, input},
+      {"last_knot", "", base::Range::any(), "input signal at value_7; the others are evenly spaced between", {}, input}};
   constexpr std::array<std::string_view, kKnots> kKeys{"value_1", "value_2", "value_3", "value_4", "value_5", "value_6", "value_7"};
   for (const std::string_view key : kKeys) {
     specs.push_back({key, "", base::Range::non_negative(), "value of the curve", {}, form});
