@@ -78,10 +78,15 @@ struct PositionSource {
   std::string tracker = {};  ///< name of a tracker
 };
 
-/// The bytes of the file end early; the message is that of LogBytes::broken().
+/// The bytes of the file end early.
 struct BytesEndEarly {
-  std::string message;
+  enum class Cause { unreadable, cut, damaged };
+  Cause cause = Cause::cut;
+  std::uint64_t byte = 0;   ///< position in the file, compressed if the file is
+  std::string reason = {};  ///< words of the operating system or of zlib; empty for Cause::cut
 };
+/// Returns the cause and its place, also for the error of a file without any usable byte.
+std::string to_string(const BytesEndEarly& end);
 /// No frame of the source has robots.
 struct NoFrameWithRobots {
   PositionSource::Kind source = PositionSource::Kind::vision;

@@ -37,7 +37,7 @@ struct LogBytes::State {
   std::size_t end = 0;
   std::uint64_t offset = 0;
   bool at_end = false;
-  std::string broken;
+  std::optional<BytesEndEarly> broken;
 
   ~State() {
     if (zip_open) {
@@ -49,7 +49,7 @@ struct LogBytes::State {
     const std::size_t got = std::fread(into, 1, count, file.get());
     file_read += got;
     if (got < count && std::ferror(file.get()) != 0) {
-      broken = fmt::format("byte {} of the file cannot be read: {}", file_read, std::strerror(errno));
+      broken = BytesEndEarly{BytesEndEarly::Cause::unreadable, file_read, std::strerror(errno)};
     }
     return got;
   }
@@ -75,8 +75,8 @@ struct LogBytes::State {
         zip.next_in = packed.data();
         zip.avail_in = static_cast<uInt>(read(packed.data(), packed.size()));
         if (zip.avail_in == 0) {
-          if (!between_members && broken.empty()) {
-            broken = fmt::format("the compressed file ends at byte {}, before the end of its data", file_read);
+          if (!between_members && !broken) {
+            broken = BytesEndEarly{BytesEndEarly::Cause::cut, file_read, {}};
           }
           return false;
         }
@@ -92,13 +92,12 @@ struct LogBytes::State {
       if (result == Z_STREAM_END) {
         between_members = true;
       } else if (result != Z_OK && result != Z_BUF_ERROR) {
-        broken = fmt::format("the compressed file is damaged near byte {} ({}); the rest cannot be decompressed", packed_offset(),
-                             zip.msg != nullptr ? zip.msg : "wrong data");
+        broken = BytesEndEarly{BytesEndEarly::Cause::damaged, packed_offset(), zip.msg != nullptr ? zip.msg : "wrong data"};
         break;
       }
     }
     end += room - zip.avail_out;
-    return broken.empty();
+    return !broken;
   }
 
   void fill() {
@@ -116,6 +115,18 @@ struct LogBytes::State {
     }
   }
 };
+
+std::string to_string(const BytesEndEarly& end) {
+  switch (end.cause) {
+    case BytesEndEarly::Cause::unreadable:
+      return fmt::format("byte {} of the file cannot be read: {}", end.byte, end.reason);
+    case BytesEndEarly::Cause::cut:
+      return fmt::format("the compressed file ends at byte {}, before the end of its data", end.byte);
+    case BytesEndEarly::Cause::damaged:
+      return fmt::format("the compressed file is damaged near byte {} ({}); the rest cannot be decompressed", end.byte, end.reason);
+  }
+  return {};
+}
 
 LogBytes::LogBytes(const std::filesystem::path& file) : state_(std::make_unique<State>()) {
   State& s = *state_;
@@ -169,7 +180,7 @@ void LogBytes::skip(std::uint64_t count) {
 
 std::uint64_t LogBytes::offset() const { return state_->offset; }
 bool LogBytes::is_packed() const { return state_->zip_open; }
-const std::string& LogBytes::broken() const { return state_->broken; }
+const std::optional<BytesEndEarly>& LogBytes::broken() const { return state_->broken; }
 
 double LogBytes::share() const {
   const State& s = *state_;

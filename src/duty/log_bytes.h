@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
+#include <optional>
 #include <string_view>
+
+#include "duty/import_report.h"
 
 namespace heatsoak::duty {
 
@@ -25,8 +27,8 @@ class LogBytes {
   /// Returns the position in the uncompressed bytes.
   [[nodiscard]] std::uint64_t offset() const;
   [[nodiscard]] bool is_packed() const;
-  /// Returns why the bytes end early, with the position in the file; empty if they do not.
-  [[nodiscard]] const std::string& broken() const;
+  /// Returns why the bytes end early; nothing if they do not.
+  [[nodiscard]] const std::optional<BytesEndEarly>& broken() const;
   /// Returns the share of the file that has been read, 0 to 1.
   [[nodiscard]] double share() const;
 

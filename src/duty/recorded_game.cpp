@@ -79,8 +79,8 @@ const LogType& log_type(const std::filesystem::path& file, const std::string& fo
       return type;
     }
   }
-  if (head.empty() && !bytes.broken().empty()) {
-    throw base::bad_input({file.string()}, "", bytes.broken());
+  if (head.empty() && bytes.broken()) {
+    throw base::bad_input({file.string()}, "", to_string(*bytes.broken()));
   }
   throw not_a_game(file, head);
 }

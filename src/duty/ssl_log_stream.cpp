@@ -72,7 +72,7 @@ SslLogStream::SslLogStream(LogBytes& bytes, const std::filesystem::path& file, L
   if (head.size() < kHeader || !head.starts_with(kSslMagic)) {
     throw base::bad_input({file.string()}, "",
                           fmt::format("is not an SSL log: its first {} bytes are not \"{}\" and a version{}", kHeader, kSslMagic,
-                                      bytes_.broken().empty() ? "" : fmt::format("; {}", bytes_.broken())));
+                                      bytes_.broken() ? fmt::format("; {}", to_string(*bytes_.broken())) : ""));
   }
   const auto version = static_cast<std::int32_t>(big_endian(head, kSslMagic.size(), 4));
   if (version != 1) {

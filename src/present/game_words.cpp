@@ -39,7 +39,7 @@ std::string say(const duty::ClockRestarts& of) {
                      of.time_s, of.after_s, of.pause_s);
 }
 
-std::string say(const duty::BytesEndEarly& of) { return of.message + "; what came before is used"; }
+std::string say(const duty::BytesEndEarly& of) { return to_string(of) + "; what came before is used"; }
 
 std::string say(const duty::NoFrameWithRobots& of) {
   return fmt::format("the log holds no frame of {} with robots", of.source == duty::PositionSource::Kind::tracker ? "a tracker" : "vision");

@@ -49,8 +49,12 @@ TEST(WordsOfGames, Faults) {
 TEST(WordsOfGames, Notes) {
   using namespace duty;
   expect_sentences<ImportNote>({
-      {BytesEndEarly{"the compressed file ends at byte 3, before the end of its data"},
+      {BytesEndEarly{BytesEndEarly::Cause::cut, 3},
        "the compressed file ends at byte 3, before the end of its data; what came before is used"},
+      {BytesEndEarly{BytesEndEarly::Cause::damaged, 3, "wrong data"},
+       "the compressed file is damaged near byte 3 (wrong data); the rest cannot be decompressed; what came before is used"},
+      {BytesEndEarly{BytesEndEarly::Cause::unreadable, 3, "Input/output error"},
+       "byte 3 of the file cannot be read: Input/output error; what came before is used"},
       {NoFrameWithRobots{PositionSource::Kind::vision}, "the log holds no frame of vision with robots"},
       {NoFrameWithRobots{PositionSource::Kind::tracker}, "the log holds no frame of a tracker with robots"},
       {RowsFarApart{16.6667, RowTimeUnit::milliseconds},

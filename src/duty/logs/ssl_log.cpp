@@ -145,8 +145,8 @@ class Import {
     report.start_unix_s = clock_.start_unix_s();
     report.source = source_.tracked ? PositionSource{.kind = PositionSource::Kind::tracker, .tracker = source_.name}
                                     : PositionSource{.kind = PositionSource::Kind::vision, .cameras = cameras_.size()};
-    if (!bytes_.broken().empty()) {
-      report.notes.emplace_back(BytesEndEarly{bytes_.broken()});
+    if (bytes_.broken()) {
+      report.notes.emplace_back(*bytes_.broken());
     }
     if (report.frames == 0) {
       report.notes.emplace_back(NoFrameWithRobots{report.source.kind});
