@@ -12,6 +12,7 @@
 #include "base/air_range.h"
 #include "check/command_answers.h"
 #include "check/limit.h"
+#include "check/limit_words.h"
 #include "check/number_limit.h"
 #include "derate/option_quantities.h"
 #include "input/reader.h"
@@ -203,8 +204,7 @@ class CheckReader {
     }
     check_.temperature_C = table_.quantity(
         {"temperature", "degC", base::Range::between(-60.0, 1000.0), "temperature above which time is counted"}, input::Need::optional);
-    check_.air_C = table_.quantity({"air", "degC", base::kPossibleAir_C, "air temperature of a log that has none"},
-                                   input::Need::optional);
+    check_.air_C = table_.quantity({"air", "degC", base::kPossibleAir_C, "air temperature of a log that has none"}, input::Need::optional);
   }
 
   void read_artefacts() {
@@ -381,8 +381,8 @@ class CheckReader {
         continue;
       }
       ParsedLimit parsed = parse_limit(*text, *type);
-      if (!parsed.problem.empty()) {
-        limits_->problem(key, parsed.problem);
+      if (parsed.problem) {
+        limits_->problem(key, words_of(*parsed.problem, *type));
         continue;
       }
       check_.limits.push_back({type, parsed.value, std::move(parsed.unit), *text, limits_->at(key)});
@@ -405,7 +405,7 @@ class CheckReader {
   void compare_with_loosest() {
     for (const Limit& limit : check_.limits) {
       if (const std::optional<Looseness> found = looseness(limit.value, limit.text, *limit.type, check_)) {
-        limits_->problem(limit.type->name, problem_of(*found, *limit.type));
+        limits_->problem(limit.type->name, words_of(*found, *limit.type));
       }
     }
   }

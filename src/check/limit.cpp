@@ -18,10 +18,6 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::string expected(const ThresholdType& type) {
-  return fmt::format("expected {} and a value, such as \"{}\"", to_string(type.direction), type.example);
-}
-
 /// Returns the unit behind the number; empty without a unit or a number.
 std::string unit_behind(std::string_view quantity) {
   const std::string_view rest = trimmed(quantity);
@@ -54,59 +50,41 @@ bool keeps(Bound direction, double value, double limit_value) {
 }
 
 ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
+  using Kind = LimitProblem::Kind;
   const std::string_view all = trimmed(text);
+  const auto problem = [all](Kind kind, double value = 0.0) { return ParsedLimit{.problem = LimitProblem{kind, std::string(all), value}}; };
   const std::string_view words = to_string(type.direction);
-  const std::string_view others = to_string(type.direction == Bound::at_most ? Bound::at_least : Bound::at_most);
-  if (all.starts_with(others)) {
-    return {0.0, {}, fmt::format("\"{}\" limits the wrong side of {}; {}", all, type.name, expected(type))};
+  if (all.starts_with(to_string(type.direction == Bound::at_most ? Bound::at_least : Bound::at_most))) {
+    return problem(Kind::wrong_side);
   }
   if (!all.starts_with(words) || (all.size() > words.size() && all[words.size()] != ' ')) {
-    const bool lacks_words = base::parse_quantity(all, type.unit, type.is_share).ok();
-    return {0.0,
-            {},
-            fmt::format("\"{}\" is not a limit; {}", all, lacks_words ? fmt::format("expected \"{} {}\"", words, all) : expected(type))};
+    return problem(base::parse_quantity(all, type.unit, type.is_share).ok() ? Kind::lacks_words : Kind::no_limit);
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
   const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit, type.is_share);
   if (!parsed.ok()) {
-    return {0.0, {}, fmt::format("{} (\"{}\")", parsed.problem, type.example)};
+    ParsedLimit none = problem(Kind::no_quantity);
+    none.problem->quantity_problem = parsed.problem;
+    return none;
   }
   if (!type.range.contains(parsed.value)) {
     if (type.unit == "degC" && unit_behind(quantity) == "K") {
-      const std::string number(trimmed(quantity.substr(0, quantity.size() - 1)));
-      return {0.0,
-              {},
-              fmt::format("\"{}\" is an absolute temperature, {:.0f} °C; expected \"{} {} degC\" if that is meant", all, parsed.value,
-                          words, number)};
+      ParsedLimit none = problem(Kind::absolute_temperature, parsed.value);
+      none.problem->number = trimmed(quantity.substr(0, quantity.size() - 1));
+      return none;
     }
-    if (type.is_share) {
-      return {0.0,
-              {},
-              fmt::format("\"{}\" is {} %; expected 0 to 100 %, such as \"{}\"", all, base::significant(100.0 * parsed.value, 6),
-                          type.example)};
-    }
-    return {0.0,
-            {},
-            fmt::format("\"{}\" is out of range; expected {}, such as \"{}\"", all, base::to_string(type.range, type.unit), type.example)};
+    return problem(Kind::out_of_range, parsed.value);
   }
   if (type.is_whole && parsed.value != std::floor(parsed.value)) {
-    return {0.0, {}, fmt::format("\"{}\" is not a whole number; {}", all, expected(type))};
+    return problem(Kind::fraction_of_count, parsed.value);
   }
-  return {parsed.value, unit_behind(quantity), {}};
+  return {parsed.value, unit_behind(quantity)};
 }
 
 std::string unit_of_limit(std::string_view text) {
   const std::string_view all = trimmed(text);
   const std::size_t words = to_string(all.starts_with(to_string(Bound::at_least)) ? Bound::at_least : Bound::at_most).size();
   return unit_behind(all.substr(std::min(all.size(), words)));
-}
-
-std::string bare_limit_problem(std::string_view number, const ThresholdType& type) {
-  // A share may be meant in percent or not, so the number cannot be taken over.
-  const std::string expected = type.is_share
-                                   ? std::string(type.example)
-                                   : fmt::format("{} {}{}{}", to_string(type.direction), number, type.unit.empty() ? "" : " ", type.unit);
-  return fmt::format("{} is a bare number; expected a limit as text, such as \"{}\"", number, expected);
 }
 
 std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check) {
@@ -119,56 +97,6 @@ std::optional<Looseness> looseness(double value, std::string_view text, const Th
   const double slack = kRounding * (type.direction == Bound::at_most ? 1.0 : -1.0);
   const bool is_permitted = !loosest->refusal && keeps(type.direction, value, loosest->value + (loosest->always_holds ? -slack : slack));
   return is_permitted ? std::nullopt : std::optional(Looseness{std::string(text), *loosest});
-}
-
-std::string_view words_of(LoosestBy origin) {
-  switch (origin) {
-    case LoosestBy::winding_limit:
-      return "the motor's own winding limit";
-    case LoosestBy::stator_limit:
-      return "the motor's own stator limit";
-    case LoosestBy::winding_limit_of_stator:
-      return "the motor's own winding limit, which the stator must not exceed either";
-    case LoosestBy::own_limits:
-      return "the motor's own limits";
-    case LoosestBy::driver_limit:
-      return "the current limit of the robot's driver";
-    case LoosestBy::whole_charge:
-      return "the largest current of all wheels during the whole duty";
-    case LoosestBy::duty_duration:
-      return "the duration of the duty";
-    case LoosestBy::half_match:
-      return "half of the match";
-    case LoosestBy::temperature_range:
-      return "the motor's range from the air to its winding limit";
-    case LoosestBy::motors_against:
-      return "the number of motors in 'against'";
-    case LoosestBy::values_of_files:
-      return "the number of values in a complete motor file, for every file";
-    case LoosestBy::largest_core:
-      return "twice the code of the drive core with the largest guard table";
-    case LoosestBy::largest_share:
-      return "the largest share that a limit may permit";
-    case LoosestBy::smallest_value:
-      return "the smallest possible value";
-  }
-  return {};
-}
-
-std::string problem_of(const Looseness& found, const ThresholdType& type) {
-  const LoosestLimit& loosest = found.loosest;
-  if (loosest.refusal) {
-    return fmt::format(
-        "counts only above the motor's own winding limit: 'temperature' is {:.1f} °C, the limit {:.1f} °C; expected a 'temperature' up to "
-        "that limit",
-        loosest.refusal->temperature_C, loosest.refusal->winding_limit_C);
-  }
-  if (loosest.always_holds) {
-    return fmt::format("\"{}\" holds always: {} is {}; expected a tighter limit", found.text, words_of(loosest.origin),
-                       shown(loosest.value, type));
-  }
-  return fmt::format("\"{}\" is looser than {}, {}; expected that or a tighter limit", found.text, words_of(loosest.origin),
-                     shown(loosest.value, type));
 }
 
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share) {

@@ -1,6 +1,7 @@
 // Limits in the notation of check files: "at most 150 degC".
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,10 +9,28 @@
 
 namespace heatsoak::check {
 
+/// Text that is no valid limit.
+struct LimitProblem {
+  enum class Kind {
+    wrong_side,            ///< "at least" for a value that has an upper limit, or the reverse
+    no_limit,              ///< it does not begin with "at most" or "at least"
+    lacks_words,           ///< it is a quantity alone
+    no_quantity,           ///< `quantity_problem` says why
+    absolute_temperature,  ///< a temperature in kelvin, where a difference was probably meant
+    out_of_range,
+    fraction_of_count,
+  };
+  Kind kind = Kind::no_limit;
+  std::string text;                   ///< the whole text, without spaces around it
+  double value = 0.0;                 ///< in the unit of the threshold, if the text is a quantity
+  std::string number = {};            ///< for `absolute_temperature`: the number as written
+  std::string quantity_problem = {};  ///< ParsedQuantity::problem
+};
+
 struct ParsedLimit {
-  double value = 0.0;   ///< in the unit of the threshold
-  std::string unit;     ///< unit as the user wrote it: "degC", "%"; may be empty
-  std::string problem;  ///< empty if `value` is valid
+  double value = 0.0;                        ///< in the unit of the threshold
+  std::string unit = {};                     ///< unit as the user wrote it: "degC", "%"; may be empty
+  std::optional<LimitProblem> problem = {};  ///< nothing if `value` is valid
 };
 
 /// Parses "at most 150 degC" or "at least 0.5 A". The words must be those of the threshold's direction, the number finite and in its range.
@@ -20,9 +39,6 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type);
 /// Returns the unit of a limit's text: "degC" of "at most 150 degC"; empty without a unit.
 std::string unit_of_limit(std::string_view text);
 
-/// Returns the problem of a limit that is written as a number without words, quotes and unit.
-std::string bare_limit_problem(std::string_view number, const ThresholdType& type);
-
 /// A limit that is looser than ThresholdType::loosest permits.
 struct Looseness {
   std::string text;  ///< text of the limit
@@ -30,10 +46,6 @@ struct Looseness {
 };
 /// Returns nothing if the limit `text` of `value` is permitted in this check.
 std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check);
-/// Returns the origin: "the motor's own winding limit".
-std::string_view words_of(LoosestBy origin);
-/// Returns the problem of that limit in a check file.
-std::string problem_of(const Looseness& found, const ThresholdType& type);
 
 /// Returns the limit that --update writes, in `unit`: "at most 158 degC". It lies beyond `measured` by `margin_share` of the value's
 /// distance to its origin, and is rounded so that the value keeps it. Thresholds without room get the value itself.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "check/limit.h"
 #include "derate/committed_table.h"
 #include "derate/header_text.h"
 #include "select/evaluate.h"
@@ -108,7 +109,7 @@ struct IntervalUnbounded {
 };
 /// The limit's text is invalid in the unit of its number, which is known only now.
 struct LimitInvalid {
-  std::string problem;  ///< ParsedLimit::problem
+  LimitProblem problem;
 };
 
 using Reason = std::variant<Failed, ResultNotFinite, OutOfMemory, DemandNotDelivered, TooFewSamples, LimitNeverReached, DutyIsNoMatch,

@@ -13,6 +13,7 @@
 #include "base/copper.h"
 #include "check/answer_number.h"
 #include "check/limit.h"
+#include "check/limit_words.h"
 #include "check/not_evaluated.h"
 #include "check/thresholds/peak.h"
 
@@ -120,7 +121,7 @@ std::string parse_number_limit(std::string_view name, std::string_view text, Lim
   limit.value = parsed.value;
   limit.unit = parsed.unit;
   limit.text = text;
-  return parsed.problem;
+  return parsed.problem ? words_of(*parsed.problem, *limit.type) : "";
 }
 
 Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
@@ -139,8 +140,8 @@ Measured measure_number(Limit& limit, const nlohmann::ordered_json& answer) {
   }
   set_type(limit, std::string(limit.type->name), worst.unit, direction, limit.type->is_share);
   const ParsedLimit parsed = parse_limit(limit.text, *limit.type);
-  if (!parsed.problem.empty()) {
-    throw NotEvaluated(LimitInvalid{parsed.problem});
+  if (parsed.problem) {
+    throw NotEvaluated(LimitInvalid{*parsed.problem});
   }
   limit.value = parsed.value;
   // Only now: a limit that cannot fail, or a fraction as the limit of a count, is permitted, but --update writes none.

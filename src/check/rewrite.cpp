@@ -46,8 +46,8 @@ std::string with_new_limits(const std::string& content, std::span<Outcome> outco
     }
     const std::string text = updated_limit(*outcome.measured, *limit.type, limit.unit, margin_share);
     const ParsedLimit parsed = parse_limit(text, *limit.type);
-    if (!parsed.problem.empty()) {
-      outcome.not_rewritten = LimitInvalid{parsed.problem};
+    if (parsed.problem) {
+      outcome.not_rewritten = LimitInvalid{*parsed.problem};
       continue;
     }
     if (limit.value == 0.0 && outcome.passed() && !keeps(limit.type->direction, parsed.value, 0.0)) {

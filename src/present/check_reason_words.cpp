@@ -8,6 +8,7 @@
 
 #include "base/counted.h"
 #include "check/limit.h"
+#include "check/limit_words.h"
 #include "present/check_words.h"
 #include "present/derating.h"
 #include "present/failure_words.h"
@@ -155,7 +156,7 @@ std::string say(const check::IntervalUnbounded& of, const check::Limit& limit) {
       of.name, limit.type->direction == check::Bound::at_most ? "upper" : "lower");
 }
 
-std::string say(const check::LimitInvalid& of, const check::Limit& /*limit*/) { return of.problem; }
+std::string say(const check::LimitInvalid& of, const check::Limit& limit) { return check::words_of(of.problem, *limit.type); }
 
 }  // namespace
 

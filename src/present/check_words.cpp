@@ -7,6 +7,7 @@
 
 #include "base/counted.h"
 #include "check/limit.h"
+#include "check/limit_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -25,9 +26,9 @@ std::string cause_words(const check::NotRewritten& cause, const check::Threshold
       [&type](const auto& each) -> std::string {
         using Kind = std::decay_t<decltype(each)>;
         if constexpr (std::is_same_v<Kind, check::Looseness>) {
-          return check::problem_of(each, type);
+          return check::words_of(each, type);
         } else if constexpr (std::is_same_v<Kind, check::LimitInvalid>) {
-          return each.problem;
+          return check::words_of(each.problem, type);
         } else {
           static_assert(std::is_same_v<Kind, check::NoTimeSuffices>);
           return "no time is long enough";

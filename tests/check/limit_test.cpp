@@ -5,6 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+
+#include "check/limit_words.h"
 
 namespace heatsoak::check {
 namespace {
@@ -25,7 +29,10 @@ TEST(Limit, IsReadInTheUnitOfItsThreshold) {
 }
 
 TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
-  const auto problem = [](std::string_view text, std::string_view name) { return parse_limit(text, threshold(name)).problem; };
+  const auto problem = [](std::string_view text, std::string_view name) {
+    const std::optional<LimitProblem> found = parse_limit(text, threshold(name)).problem;
+    return found ? words_of(*found, threshold(name)) : "";
+  };
   EXPECT_THAT(problem("150 degC", "winding_peak_p95"), HasSubstr("expected \"at most 150 degC\""));
   EXPECT_THAT(problem("below 150 degC", "winding_peak_p95"), HasSubstr("expected at most and a value"));
   EXPECT_THAT(problem("at most 70 K", "winding_peak_p95"), HasSubstr("-203 °C; expected \"at most 70 degC\""));
@@ -77,7 +84,7 @@ TEST(UpdatedLimit, IsKeptByTheValueItWasMadeFrom) {
         }
         const std::string text = updated_limit({measured, 0.0}, type, unit, margin_share);
         const ParsedLimit parsed = parse_limit(text, type);
-        EXPECT_EQ(parsed.problem, "") << type.name << " " << text;
+        EXPECT_FALSE(parsed.problem) << type.name << " " << text;
         EXPECT_TRUE(keeps(type.direction, measured, parsed.value)) << type.name << " " << measured << " " << text;
       }
     }

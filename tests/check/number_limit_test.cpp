@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "check/answer_number.h"
 #include "check/check_job.h"
+#include "check/limit_words.h"
 #include "check/not_evaluated.h"
 #include "check/rewrite.h"
 #include "check/typed_outcome.h"
@@ -270,7 +271,9 @@ TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
     EXPECT_FALSE(each.passed());
     EXPECT_FALSE(each.measured) << each.limit.type->name;
   }
-  const auto problem_of_limit = [&all](std::size_t i) { return std::get<LimitInvalid>(all[i].reason.value()).problem; };
+  const auto problem_of_limit = [&all](std::size_t i) {
+    return words_of(std::get<LimitInvalid>(all[i].reason.value()).problem, *all[i].limit.type);
+  };
   EXPECT_TRUE(reason_of<NumberIsNull>(all[0]));
   EXPECT_THAT(problem_of_limit(1), HasSubstr("'s' is no unit of this quantity"));
   EXPECT_THAT(problem_of_limit(2), HasSubstr("\"at most 70 K\" is an absolute temperature"));
@@ -355,9 +358,9 @@ TEST_F(CommandChecks, UpdateWritesNoLimitThatCannotFail) {
   }
   EXPECT_THAT(after, HasSubstr("coverage_90.winding_C = \"at most 95 %\"\n"));
   EXPECT_THAT(after, HasSubstr("idle_s = \"at least 0 s\"\n"));
-  EXPECT_EQ(problem_of(std::get<Looseness>(*all[0].not_rewritten), *all[0].limit.type),
+  EXPECT_EQ(words_of(std::get<Looseness>(*all[0].not_rewritten), *all[0].limit.type),
             "\"at most 100 %\" is looser than the largest share that a limit may permit, 99.9 %; expected that or a tighter limit");
-  EXPECT_EQ(problem_of(std::get<Looseness>(*all[4].not_rewritten), *all[4].limit.type),
+  EXPECT_EQ(words_of(std::get<Looseness>(*all[4].not_rewritten), *all[4].limit.type),
             "\"at least 0 s\" holds always: the smallest possible value is 0 s; expected a tighter limit");
   EXPECT_FALSE(all[5].not_rewritten) << "a difference of temperatures may be negative";
   all = outcomes("coverage_90.winding_C = \"at most 95 %\"\n\"limited_s.voltage\" = \"at least 1 s\"\n");

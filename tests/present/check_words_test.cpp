@@ -57,8 +57,8 @@ TEST(CheckWords, state_why_update_leaves_a_limit) {
             "160.0 °C is above the limit of 70.0 °C; the limit is not rewritten: \"at most 167 degC\" is looser than the motor's own "
             "winding limit, 155.0 °C; expected that or a tighter limit");
   check::Outcome invalid = outcome(kPeakLimit, 60.0);
-  invalid.not_rewritten = check::LimitInvalid{"\"at most 1\" has no unit"};
-  EXPECT_EQ(reason_words(invalid), "the limit is not rewritten: \"at most 1\" has no unit");
+  invalid.not_rewritten = check::LimitInvalid{{check::LimitProblem::Kind::out_of_range, "at most 2000 degC", 2000.0}};
+  EXPECT_THAT(reason_words(invalid), testing::StartsWith("the limit is not rewritten: \"at most 2000 degC\" is out of range; expected "));
 }
 
 TEST(CheckWords, advise_more_samples_only_where_the_limit_is_broken) {
