@@ -12,6 +12,7 @@
 #include "present/check_words.h"
 #include "present/derating.h"
 #include "present/failure_words.h"
+#include "select/spread.h"
 
 namespace heatsoak::present {
 namespace {
@@ -53,9 +54,9 @@ std::string say(const check::DemandNotDelivered& of, const check::Limit& /*limit
 
 std::string say(const check::TooFewSamples& of, const check::Limit& /*limit*/) {
   return fmt::format(
-      "a bound of the 95th percentile needs 72 samples or more, or 160 if the duty is drawn at random; the check has {}. Set samples = "
-      "\"500\", or leave it out",
-      of.samples);
+      "a bound of the 95th percentile needs {} samples or more, or {} if the duty is drawn at random; the check has {}. Set samples = "
+      "\"{}\", or leave it out",
+      select::fewest_samples_for_bound(false), select::fewest_samples_for_bound(true), of.samples, check::Check().samples);
 }
 
 std::string say(const check::LimitNeverReached& /*of*/, const check::Limit& /*limit*/) {

@@ -80,7 +80,6 @@ int first_samples(bool is_drawn) { return is_drawn ? kFirstGames * base::kLanes 
 
 double error_share(int count, bool is_drawn) {
   constexpr double kFirst_share = 0.5;
-  constexpr double kLaterLooks = 7.0;
   return kError_share * (count <= (is_drawn ? kFirstGames : kFirstSamples) ? kFirst_share : (1.0 - kFirst_share) / kLaterLooks);
 }
 
@@ -113,15 +112,12 @@ DecidingSamples deciding_samples(const MotorEvaluation& motor) {
   return {prospect.deciding_samples(0.5), prospect.deciding_samples(0.9)};
 }
 
-int most_samples(const duty::Duty& duty) {
-  constexpr int kFiveDoublings = 32;
-  return first_samples(duty.shape_data->has_unknowns()) * kFiveDoublings;
-}
+int most_samples(bool is_drawn) { return first_samples(is_drawn) << kMostDoublings; }
+int most_samples(const duty::Duty& duty) { return most_samples(duty.shape_data->has_unknowns()); }
 
 bool is_worth_another_round(const Prospect& prospect, int most) {
-  constexpr double kLeastChance = 0.2;
   const double chance = prospect.decided_probability(most);
-  return chance < 1.0 && chance >= kLeastChance;
+  return chance < 1.0 && chance >= kLeastDecidingProbability;
 }
 
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,

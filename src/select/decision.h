@@ -12,15 +12,20 @@
 namespace heatsoak::select {
 
 /// Returns the number of samples after which evaluate_until_decided() first tests whether the verdict is decided; such a test is a look. If
-/// no sample exceeds a limit, this number suffices to decide that the probability is at most kMarginalProbability; 72 independent draws are
-/// needed at the error of that look. `is_drawn`: the duty draws games.
+/// no sample exceeds a limit, this number suffices to decide that the probability is at most kMarginalProbability.
 int first_samples(bool is_drawn);
 
-/// Returns the probability of a wrong verdict that a look after `count` independent draws (games, or samples of a duty without draws) may
-/// spend: half of kError_share up to the first look, a seventh of the other half for each later look. evaluate_until_decided() makes at
-/// most five later looks; two remain for a caller who requests more samples. All looks together spend at most
-/// kError_share, so draws may be added until the verdict is decided (alpha spending: Jennison and Turnbull 2000, chapter 7; Bonferroni's
-/// inequality bounds the sum). The result depends only on the count, so the same samples always give the same verdict.
+/// evaluate_until_decided() doubles the number of samples at most this many times.
+inline constexpr int kMostDoublings = 5;
+/// Looks after the first one that the error share allows for. Those that evaluate_until_decided() does not use remain for a caller who
+/// requests more samples.
+inline constexpr int kLaterLooks = kMostDoublings + 2;
+
+/// Returns the probability of a wrong verdict that a look after `count` independent draws may spend. A draw is a game, or a sample of a
+/// duty without draws. All looks up to the first one share half of kError_share. Each of kLaterLooks has an equal part of the other half.
+/// All looks together spend at most kError_share, so draws may be added until the verdict is decided (alpha spending: Jennison and Turnbull
+/// 2000, chapter 7; Bonferroni's inequality bounds the sum). The result depends only on the count, so the same samples always give the same
+/// verdict.
 double error_share(int count, bool is_drawn);
 
 /// Returns the number of samples at which the interval of the probability would exclude the threshold of the verdict, if the probability
@@ -53,11 +58,14 @@ struct DecidingSamples {
 /// several times too large, because a slightly different share needs far fewer samples. Both members are empty if the verdict is decided.
 DecidingSamples deciding_samples(const MotorEvaluation& motor);
 
-/// Returns the largest number of samples per motor that evaluate_until_decided() uses by default: 16 000, or 19 200 in 2400 games. It is a
-/// count and not a time, so that the same command gives the same answer on every computer.
+/// Returns the largest number of samples per motor that evaluate_until_decided() uses by default: first_samples() after kMostDoublings. It
+/// is a count and not a time, so that the same command gives the same answer on every computer.
+int most_samples(bool is_drawn);
 int most_samples(const duty::Duty& duty);
 
-/// Returns whether games up to `most` samples decide the verdict with a probability of at least 20 %, and it is not decided yet.
+/// Smallest probability of a decision for which further games are played.
+inline constexpr double kLeastDecidingProbability = 0.2;
+/// Returns whether games up to `most` samples decide the verdict with at least that probability, and it is not decided yet.
 bool is_worth_another_round(const Prospect& prospect, int most);
 
 /// Returns the largest number of samples that a user can request. A drawn game takes 0.6 MB and 0.07 s of one core, which limits the

@@ -6,12 +6,16 @@
 #include <limits>
 
 #include "base/binomial_bound.h"
+#include "base/lanes.h"
 #include "base/random.h"
 
 namespace heatsoak::select {
 
 namespace {
 
+constexpr double kTail_share = 0.025;
+constexpr double kPercentile_share = 0.95;
+constexpr std::size_t kFewestDraws = 20;
 constexpr double kNotKnown = std::numeric_limits<double>::infinity();
 
 Interval95 probability_interval(std::span<const char> is_over, std::size_t trials, double error_share) {
@@ -37,19 +41,23 @@ Spread95 spread(double nominal_C, std::vector<double> samples_C) {
   return {nominal_C, quantile(samples_C, 0.05), quantile(samples_C, 0.5), quantile(samples_C, 0.95)};
 }
 
+int fewest_samples_for_bound(bool is_drawn) {
+  return is_drawn ? static_cast<int>(kFewestDraws) * base::kLanes
+                  : static_cast<int>(std::ceil(std::log(kTail_share) / std::log(kPercentile_share)));
+}
+
 DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<const char> is_over, double error_share) {
-  constexpr double kTail = 0.025;
   const auto count = static_cast<double>(samples_C.size());
   std::vector<double> sorted_C(samples_C.begin(), samples_C.end());
   std::ranges::sort(sorted_C);
-  const boost::math::binomial_distribution<> below(count, 0.95);
+  const boost::math::binomial_distribution<> below(count, kPercentile_share);
   const auto at = [&](double place) {
     if (place > count - 1.0) {
       return kNotKnown;
     }
     return sorted_C[static_cast<std::size_t>(std::max(0.0, place))];
   };
-  return {{at(boost::math::quantile(below, kTail) - 1.0), at(boost::math::quantile(boost::math::complement(below, kTail)))},
+  return {{at(boost::math::quantile(below, kTail_share) - 1.0), at(boost::math::quantile(boost::math::complement(below, kTail_share)))},
           probability_interval(is_over, samples_C.size(), error_share)};
 }
 
@@ -80,8 +88,7 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
     }
   }
   std::ranges::sort(p95_C);
-  constexpr std::size_t kFewestDraws = 20;
-  return {{quantile(p95_C, 0.025), shared.draw_count < kFewestDraws ? kNotKnown : quantile(p95_C, 0.975)},
+  return {{quantile(p95_C, kTail_share), shared.draw_count < kFewestDraws ? kNotKnown : quantile(p95_C, 1.0 - kTail_share)},
           probability_interval(is_over, shared.draw_count, error_share)};
 }
 

@@ -22,12 +22,15 @@ struct SharedDraws {
   std::uint64_t seed = 1;
 };
 /// Confidence intervals of the 95th percentile (level 95 %) and of the probability (level 1 − `error_share`). The upper end of the
-/// percentile is infinite if there are too few samples: fewer than 72 independent samples, or fewer than 20 draws.
+/// percentile is infinite if there are fewer than fewest_samples_for_bound().
 struct DrawIntervals {
   Interval95 p95;
   Interval95 probability;
 };
 inline constexpr double kError_share = 0.05;
+/// Returns the smallest number of samples with an upper end of the 95th percentile's interval; if `is_drawn`, of samples in drawn games.
+/// Independent samples need so many that their largest one lies above the percentile with a probability of 97.5 %.
+int fewest_samples_for_bound(bool is_drawn);
 /// Returns the intervals for independent samples, at least one. Probability: Clopper and Pearson (1934). Percentile: two order statistics,
 /// whose ranks the binomial distribution gives.
 DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<const char> is_over, double error_share = kError_share);

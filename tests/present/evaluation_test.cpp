@@ -87,6 +87,13 @@ TEST(SamplesNeeded, all_looks_together_err_with_5_percent_at_most) {
   }
 }
 
+// 500 samples and 75 games, doubled five times; half of 5 % for the first look, a seventh of the other half for each later one.
+TEST(VerdictTopic, states_the_numbers_of_the_decision) {
+  EXPECT_THAT(undecided_meaning(),
+              testing::AllOf(HasSubstr("up to 5 times: to 16000, or to 2400 games"), HasSubstr("(less than 20 %)"),
+                             HasSubstr("probability of 2.5 %, each later one with 0.36 %"), HasSubstr("a probability of at most 5 %")));
+}
+
 TEST(SamplesNeeded, majority_counts_where_the_duty_is_drawn) {
   EXPECT_FALSE(select::samples_needed(sampled(0.48, {0.4, 0.55}, 80), false));
   EXPECT_TRUE(select::samples_needed(sampled(0.48, {0.4, 0.55}, 80), true));

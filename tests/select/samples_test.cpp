@@ -215,6 +215,14 @@ TEST(Spread, few_samples_tell_no_upper_end) {
   EXPECT_TRUE(std::isinf(sample_intervals(samples_C, over).p95.high));
   const std::vector<double> more_C(72, 80.0);
   EXPECT_EQ(sample_intervals(more_C, std::vector<char>(72, 0)).p95.high, 80.0);
+  EXPECT_EQ(fewest_samples_for_bound(false), 72);
+  const auto of_draws = [](std::size_t draws) {
+    const std::size_t samples = draws * base::kLanes;
+    return draw_intervals(std::vector<double>(samples, 80.0), std::vector<char>(samples, 0), {draws, base::kLanes, 1}).p95.high;
+  };
+  const auto fewest = static_cast<std::size_t>(fewest_samples_for_bound(true) / base::kLanes);
+  EXPECT_EQ(of_draws(fewest), 80.0);
+  EXPECT_TRUE(std::isinf(of_draws(fewest - 1)));
 }
 
 // If none of n draws exceeds the limit, up to 3/n of all draws may do so (rule of three).

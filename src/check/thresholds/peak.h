@@ -1,15 +1,29 @@
 // Shared parts of the thresholds on peak temperatures.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "check/computations.h"
 #include "check/not_evaluated.h"
+#include "select/spread.h"
 
 namespace heatsoak::check::thresholds {
 
 /// Range of plausible limits. A limit of 70 K that means a rise is outside of it, because it is −203 °C.
 inline constexpr base::Range kPlausible_C = base::Range::between(-60.0, 1000.0);
+
+/// Returns the definition of the threshold on the peak of one part, "winding" or "stator".
+inline std::string peak_p95_meaning(std::string_view part) {
+  return fmt::format(
+      "95th percentile over the samples of the {}'s highest temperature, of the wheel whose winding gets hottest: the upper confidence "
+      "bound (97.5 %, one-sided) by order statistics, from at least {} samples. On a duty that is drawn at random: the bound by bootstrap "
+      "over the draws, from at least {} samples",
+      part, select::fewest_samples_for_bound(false), select::fewest_samples_for_bound(true));
+}
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
 template <class Member>

@@ -3,13 +3,11 @@
 namespace heatsoak::check::thresholds {
 
 ThresholdType winding_peak_p95() {
+  static const std::string kMeaning = peak_p95_meaning("winding");
   return {.name = {},
           .unit = "degC",
           .range = kPlausible_C,
-          .meaning =
-              "95th percentile over the samples of the winding's highest temperature, of the wheel whose winding gets hottest: the upper "
-              "confidence bound (97.5 %, one-sided) by order statistics, from at least 72 samples. On a duty that is drawn at random: the "
-              "bound by bootstrap over the draws, from at least 160 samples",
+          .meaning = kMeaning,
           .example = "at most 120 degC",
           .needs = {Setting::robot, Setting::duty, Setting::motor},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},

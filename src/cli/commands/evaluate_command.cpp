@@ -15,6 +15,7 @@
 #include "duty/named_files.h"
 #include "present/evaluation.h"
 #include "select/candidates.h"
+#include "select/decision.h"
 #include "simulate/evaluation.h"
 
 namespace heatsoak::cli::commands {
@@ -124,9 +125,11 @@ Command evaluate_command() {
                        "calibrated motor (`heatsoak calibrate --out FILE`), in place of the motor that it was fitted from")
             ->type_name("FILE.toml");
         add_conditions(app, options->conditions);
-        app.add_option("--samples", options->job.samples,
-                       "number of draws of every declared tolerance and range; a match has one game for every eight; 0: none, so "
-                       "no verdict over tolerances; unless given, as many as decide the verdicts, at most 16000, or 19200 on a match")
+        app.add_option(
+               "--samples", options->job.samples,
+               fmt::format("number of draws of every declared tolerance and range; a match has one game for every eight; 0: none, "
+                           "so no verdict over tolerances; unless given, as many as decide the verdicts, at most {}, or {} on a match",
+                           select::most_samples(false), select::most_samples(true)))
             ->check(whole_number(1'000'000))
             ->type_name("N");
         app.add_flag("--closed-loop", options->is_closed_loop,
