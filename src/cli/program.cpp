@@ -130,7 +130,7 @@ void require_drawing_for(const CLI::App& verb) {
   if (plot && !plot->empty()) {
     report::require_drawing("--plot", "leave out --plot for the answer without a picture");
   } else if (plot && report && !report->empty() && report->results().front().ends_with(".html")) {
-    report::require_drawing("--report", "expected a name that ends in .md for the report without a picture");
+    report::require_drawing("--report", "give a name that ends in .md for the report without a picture");
   }
 }
 

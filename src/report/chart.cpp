@@ -42,20 +42,21 @@ fs::path find_plugin(std::string& searched) {
   return {};
 }
 
-fs::path found_plugin(const std::string& what_and_remedy) {
+/// `need` and `remedy` begin with a comma, or are empty.
+fs::path found_plugin(const std::string& need, const std::string& remedy) {
   std::string searched;
   fs::path plugin = find_plugin(searched);
   if (plugin.empty()) {
     throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("{}the drawing library {} is missing; HEATSOAK_PLUGINS names its folder; searched:{}", what_and_remedy,
-                                    kChartPluginFile, searched));
+                        fmt::format("the drawing library {} is missing{}; set HEATSOAK_PLUGINS to its folder{}; searched:{}",
+                                    kChartPluginFile, need, remedy, searched));
   }
   return plugin;
 }
 
 /// The library is never closed: VTK's object factories do not survive unloading. Opening it again is cheap.
 void* plugin_function(const char* name) {
-  const fs::path plugin = found_plugin("");
+  const fs::path plugin = found_plugin("", "");
   void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = library != nullptr ? dlsym(library, name) : nullptr;
   if (function == nullptr) {
@@ -85,7 +86,9 @@ void check_lengths(const Chart& chart) {
 
 }  // namespace
 
-void require_drawing(std::string_view what, std::string_view remedy) { found_plugin(fmt::format("{}: {}; ", what, remedy)); }
+void require_drawing(std::string_view what, std::string_view remedy) {
+  found_plugin(fmt::format(", which {} needs", what), fmt::format(", or {}", remedy));
+}
 
 std::string draw_svg(const Chart& chart) {
   check_lengths(chart);

@@ -66,7 +66,7 @@ struct Chart {
   int panel_height_px = 360;  ///< includes title and tick labels
 };
 
-/// Throws Failure (bad_input) if the drawing library is missing. `what` needs it; `remedy` states how to do without.
+/// Throws Failure (bad_input) if the drawing library is missing. `what` needs it; `remedy` says how to do without it.
 void require_drawing(std::string_view what, std::string_view remedy);
 
 /// Draws `chart` as SVG; needs no display. Throws Failure (bug) if the drawing library is missing or fails.

@@ -410,7 +410,8 @@ TEST_F(FrontDoor, a_missing_drawing_library_is_reported_before_the_computation) 
   const std::string words = " evaluate --robot roboteam_twente_v2024 --duty division_a_match --samples 80000 --db " + kSource.string();
   const ProgramRun result = run_here("timeout 20 bin/heatsoak" + words + " --plot verdict.svg", {"HEATSOAK_PLUGINS"});
   EXPECT_EQ(result.exit_code, 2) << result.err;
-  EXPECT_THAT(result.err, AllOf(HasSubstr("--plot"), HasSubstr("without a picture")));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("is missing, which --plot needs"), HasSubstr("without a picture")));
+  EXPECT_LT(result.err.find("is missing"), result.err.find("leave out --plot")) << "the fault before the remedy";
   EXPECT_EQ(run_here("timeout 20 bin/heatsoak" + words + " --report verdict.html", {"HEATSOAK_PLUGINS"}).exit_code, 2);
 }
 
