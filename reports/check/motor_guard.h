@@ -5,7 +5,7 @@
  * Winding at most 125 degC (lower end of the limit's range around 155 degC), air from 0 to 40 degC; thermal data: estimated.
  * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds its
  * limit. The safety factor on heat is 1.85, for a confidence of 0.95:
- * with 95 % certainty at least 95 % of the motors within their tolerances keep every limit in the 11 hardest uses.
+ * with 95 % certainty at least 95 % of the motors within their tolerances keep every limit in the 11 hottest load patterns.
  * 0 of the 60 drawn motors, which determined the safety factor, exceeded a limit; the hottest winding reached
  * 124 degC. These draws show no more than the stated share, because they selected the factor (order statistic, Wilks 1941; to 1 %);
  * other draws give another factor.

@@ -77,8 +77,9 @@ std::string drawn_motors_text(const Guarantee& checked) {
 }
 
 std::string confidence_text(const Derating& derating, const Guarantee& checked) {
-  return fmt::format("Confidence {:.6g}: {} keep every limit in the {} hardest uses; {}.", derating.options.guarantee.required_share,
-                     promised_share_text(derating), derating.uses.size(), drawn_motors_text(checked));
+  return fmt::format("Confidence {:.6g}: {} keep every limit in the {} hottest load patterns; {}.",
+                     derating.options.guarantee.required_share, promised_share_text(derating), derating.uses.size(),
+                     drawn_motors_text(checked));
 }
 
 std::vector<std::string> value_warnings(const Derating& derating) {

@@ -103,12 +103,13 @@ void require_own_friction(const Derating& derating) {
           : std::string();
   throw base::Failure(
       base::ExitCode::limit_exceeded,
-      fmt::format("{}: the motor cannot hold its own friction: at {:.0f} rad/s its lasting current is {:.2f} A ({:.2f} A at standstill), "
-                  "but it needs its no-load current of {:.2f} A to turn; expected a lasting current of at least that up to the no-load "
-                  "speed of {:.0f} rad/s on a full battery; check no_load_current and winding_limit, use a lower --ambient or "
-                  "--confidence{}",
-                  derating.motor_id, found->speed_rad_per_s, found->lasting_A, found->at_standstill_A, found->needed_A,
-                  derating.reachable_speed_rad_per_s / kPushed_ratio, slower));
+      fmt::format(
+          "{}: the motor cannot hold its own friction: at {:.0f} rad/s its continuous current is {:.2f} A ({:.2f} A at standstill), "
+          "but it needs its no-load current of {:.2f} A to turn; expected a continuous current of at least that up to the no-load "
+          "speed of {:.0f} rad/s on a full battery; check no_load_current and winding_limit, use a lower --ambient or "
+          "--confidence{}",
+          derating.motor_id, found->speed_rad_per_s, found->lasting_A, found->at_standstill_A, found->needed_A,
+          derating.reachable_speed_rad_per_s / kPushed_ratio, slower));
 }
 
 }  // namespace heatsoak::derate

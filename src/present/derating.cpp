@@ -31,12 +31,13 @@ double current_at_A(const derate::UsePlayed& played, double time_s) {
 }
 
 Table allowed_currents(const derate::Derating& derating) {
-  Table table{
-      .title = "Allowed current in A over time, always fully used, from air temperature", .columns = {{"speed", "rad/s", 0}}, .rows = {}};
+  Table table{.title = "Allowed current in A after a time of full use, beginning with a cold motor",
+              .columns = {{"speed", "rad/s", 0}},
+              .rows = {}};
   for (const double time_s : kMoments_s) {
     table.columns.push_back({fmt::format("at {}", duration_text(time_s)), "", 0});
   }
-  table.columns.push_back({"lasting", "", 0});
+  table.columns.push_back({"continuous", "", 0});
   for (const derate::UsePlayed& played : derating.uses) {
     if (played.use.on_s > 0.0) {
       break;  // the plain case, a current held without pauses, comes first
@@ -101,7 +102,7 @@ void add_power_off_and_friction(Document& document, const derate::Derating& dera
   const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
   if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {
     document.add_note(Severity::warning,
-                      fmt::format("The lasting current for every speed, {:.2f} A, is below the no-load current of {:.2f} A: a wheel of "
+                      fmt::format("The continuous current for every speed, {:.2f} A, is below the no-load current of {:.2f} A: a wheel of "
                                   "unknown speed stops. Above {:.0f} rad/s, where only a push turns the motor, it cannot turn for ever.",
                                   limp_A, friction->needed_A, friction->held_rad_per_s));
   }
@@ -182,17 +183,17 @@ std::string broken_words(const derate::TableCheck& check) {
 Document document_of(const derate::Derating& derating, const motor::Motor& motor) {
   const derate::Guarantee& checked = derating.guarantee;
   Document document{
-      .headline = {{fmt::format(
-                       "{} in {}: {} keep the winding below {:.0f} °C{}{} in air of {:.0f} °C.", derating.motor_id, derating.robot_id,
-                       derate::promised_share_text(derating), derating.rules.limits.winding_C, limit_range_words(derating),
-                       derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
-                       derating.rules.hottest_ambient_C)},
-                   {fmt::format("The {} hardest uses were simulated, with {} thermal data.", derating.uses.size(), derating.data_quality)},
-                   {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A from cold, {:.2f} A lasting.",
-                                derating.observer.heat_safety_factor(),
-                                derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
-                                derate::limp_current_A(derating))}},
-      .paragraphs = {fmt::format("Confidence {:.6g}: {} in the {} hardest uses. This confidence needs at least {} draws.",
+      .headline =
+          {{fmt::format("{} in {}: {} keep the winding below {:.0f} °C{}{} in air of {:.0f} °C.", derating.motor_id, derating.robot_id,
+                        derate::promised_share_text(derating), derating.rules.limits.winding_C, limit_range_words(derating),
+                        derating.rules.limits.stator_C ? fmt::format(", the stator below {:.0f} °C", *derating.rules.limits.stator_C) : "",
+                        derating.rules.hottest_ambient_C)},
+           {fmt::format("The {} hottest load patterns were simulated, with {} thermal data.", derating.uses.size(), derating.data_quality)},
+           {fmt::format("Safety factor on heat {:.2f}; current {:.1f} A for a cold motor, {:.2f} A continuous.",
+                        derating.observer.heat_safety_factor(),
+                        derating.table.allowed_A(0.0, derating.rules.hottest_ambient_C, derating.rules.hottest_ambient_C),
+                        derate::limp_current_A(derating))}},
+      .paragraphs = {fmt::format("Confidence {:.6g}: {} in the {} hottest load patterns. This confidence needs at least {} draws.",
                                  derating.options.guarantee.required_share, derate::drawn_motors_text(checked), derating.uses.size(),
                                  derate::least_samples(derating.options.guarantee)),
                      fmt::format("The windings of the {} drawn motors reached {:.0f} °C (median), {:.0f} °C (95th percentile), {:.0f} °C "

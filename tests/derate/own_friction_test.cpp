@@ -67,7 +67,7 @@ TEST(OwnFriction, RefusalNamesBothCurrentsTheSpeedAndTheRemedy) {
     FAIL() << "accepted";
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::limit_exceeded);
-    EXPECT_THAT(failure.what(), HasSubstr("at 400 rad/s its lasting current is 1.00 A (3.00 A at standstill)"));
+    EXPECT_THAT(failure.what(), HasSubstr("at 400 rad/s its continuous current is 1.00 A (3.00 A at standstill)"));
     EXPECT_THAT(failure.what(), HasSubstr("its no-load current of 2.00 A"));
     EXPECT_THAT(failure.what(), HasSubstr("250 rad/s with [drive] voltage_limit = \"8.2 V\""));  // 250 rad/s · 0.0328 N m/A
   }

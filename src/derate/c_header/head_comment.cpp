@@ -55,7 +55,7 @@ std::string guarantee_text(const Derating& derating) {
       " * While the current is at most allowed_current_A and the air no hotter than that, the observer's winding temperature never exceeds "
       "its\n"
       " * limit. The safety factor on heat is {:.3g}, for a confidence of {:.3g}:\n"
-      " * {} keep every limit in the {} hardest uses.\n"
+      " * {} keep every limit in the {} hottest load patterns.\n"
       " * {}; the hottest winding reached\n"
       " * {:.0f} degC. These draws show no more than the stated share, because they selected the factor (order statistic, Wilks 1941; to "
       "1 %);\n"

@@ -382,7 +382,7 @@ std::string comment(const SensorPlan& plan) {
       "degC\n"
       " * from a start at the hottest air, and {:.0f} degC from a warmer start, all nodes equally warm up to the winding limit; {} of {} "
       "drawn\n"
-      " * motors exceed a limit. A dropped sensor lowers the current at once, under lasting load of the nominal motor by at most {} A.\n"
+      " * motors exceed a limit. A dropped sensor lowers the current at once, under continuous load of the nominal motor by at most {} A.\n"
       " * Options of the sensor:\n"
       " * {}\n"
       " */\n",
