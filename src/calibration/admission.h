@@ -94,12 +94,12 @@ struct Admission {
 };
 
 /// Checks all logs and throws the problems of all of them, several as base::SeveralFailures:
-/// - RowsGivenTwice if the same rows are fitted twice, or both fitted and held out. Without a fit each log is predicted on its own, so the
-///   same log may be given again;
-/// - NothingAboutHeat with all fitted logs that contain no information about heat;
-/// - Failure (bad_input) with all logs that lack heat input, ambient or motor temperature;
-/// - LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor (only notes if
-///   `takes_logs_as_they_are`).
+/// - It throws RowsGivenTwice if the same rows are fitted twice, or both fitted and held out. Without a fit each log is predicted on its
+///   own, so the same log may be given again.
+/// - It throws NothingAboutHeat with all fitted logs that contain no information about heat.
+/// - It throws Failure (bad_input) with all logs that lack heat input, ambient or motor temperature.
+/// - It throws LogsLookWrong with the findings of every log if units, signs or sensors look wrong in themselves or for this motor. If
+///   `takes_logs_as_they_are`, these findings are only notes.
 /// `ambient_C` is the user's air temperature for logs without one.
 Admission admit(const motor::Motor& motor, std::span<const recording::Recording> fitted, std::span<const recording::Recording> held_out,
                 bool takes_logs_as_they_are, std::optional<double> ambient_C = {});

@@ -24,20 +24,21 @@ struct CoreOptions {
 /// tolerance if the file declares none.
 CoreOptions with_tolerance(CoreOptions options, const motor::Motor& motor);
 
-/// Returns the configuration without a guard. Needs the tables body, wheels, drive, battery, traction and limits of the robot's file and
-/// the rotor inertia of the motor; [friction] may be missing as a whole (notes_on() reports it). Throws Failure (bad_input) that names all
-/// parameters that are missing, or the longest possible period if it is too long for the wheel-speed loop (wheel_loop.h).
+/// Returns the configuration without a guard. The robot's file must have the tables body, wheels, drive, battery, traction and limits, and
+/// the motor a rotor inertia. [friction] may be missing as a whole; notes_on() reports it. Throws Failure (bad_input) that names all
+/// missing parameters, or the longest possible period if it is too long for the wheel-speed loop (wheel_loop.h).
 ///
-///   resistance          R25·k + R_driver, k = 0.75·1.1² for a sinusoidal current, as the plant has it (make_electrics())
-///   lowest resistance   the same with R25·lowest_resistance_ratio·(1 + α·(coldest air − 25 °C))
-///   gear efficiency     gear times rolling efficiency: motor to ground
-///   fastest wheel       1.1·U_full/(K_t·n): the full battery, and 10 % by a push, as barrier_rules()
-///   current limit       of the driver; without one, what battery and back-EMF drive together: (U + K_t·n·fastest wheel)/lowest resistance,
-///                       U the smaller of full battery and voltage limit
-///   largest acceleration K_t·n·current limit/(η·J_wheel): a wheel in the air that brakes, where the gear's loss helps
-///   traction            √(μ² − c²) of coefficient μ and roller drag c, as inverse_dynamics() passes on
-///   friction smoothing  that of the plant (FrictionConfig::smoothing) at the rim
-///   gains               wheel_loop_gains()
+/// The values are calculated as follows:
+///   resistance           = R25·k + R_driver, with k = 0.75·1.1² for a sinusoidal current, as in the plant (make_electrics())
+///   lowest resistance    = the same with R25·lowest_resistance_ratio·(1 + α·(coldest air − 25 °C))
+///   gear efficiency      = gear times rolling efficiency, from motor to ground
+///   fastest wheel        = 1.1·U_full/(K_t·n), with the voltage of a full battery; a push adds the 10 %, as in barrier_rules()
+///   current limit        = that of the driver; without one, the largest current that battery and back-EMF can drive together:
+///                          (U + K_t·n·fastest wheel)/lowest resistance, with U the smaller of full battery and voltage limit
+///   largest acceleration = K_t·n·current limit/(η·J_wheel), of a braking wheel in the air, where the gear's loss helps
+///   traction             = √(μ² − c²), with friction coefficient μ and roller drag c, as inverse_dynamics() assumes
+///   friction smoothing   = that of the plant (FrictionConfig::smoothing) at the rim
+///   gains                = wheel_loop_gains()
 robot_core::Config make_core_config(const robot::Robot& robot, const motor::MotorValues& motor, const CoreOptions& options);
 
 /// Throws Failure (bad_input) with every value that robot and motors lack for the drive core and its simulation.

@@ -79,7 +79,8 @@ class HotMotor {
     return all;
   }
 
-  /// Returns the shortest sufficient rest in whole seconds; empty if there is none. More rest never needs more.
+  /// Returns the shortest sufficient rest in whole seconds; empty if there is none. A longer rest leaves the motor colder, so it suffices
+  /// as well.
   [[nodiscard]] std::optional<int> rest_s(double start_s, double play_s) const {
     Rests rests{0, 30, 60, 120, 300, 600, 1200, kLongestRest_s};
     int short_s = -1;
@@ -170,7 +171,7 @@ class HotMotor {
         left_s -= part_s;
       }
     }
-    // The hot motor starts at its limit, so a rounding error is none.
+    // Without rest the motor starts exactly at its limit; a rounding error must not count as exceeding it.
     constexpr double kTolerance_K = 1e-3;
     std::array<bool, base::kLanes> keeps{};
     for (int lane = 0; lane < base::kLanes; ++lane) {
