@@ -46,7 +46,7 @@ std::string undecided_meaning() {
       "about the tolerances.",
       fmt::arg("rare", 100.0 * select::kMarginalProbability), fmt::arg("majority", 100.0 * select::kMajority),
       fmt::arg("doublings", select::kMostDoublings), fmt::arg("most", most), fmt::arg("games", select::most_samples(true) / base::kLanes),
-      fmt::arg("least", 100.0 * select::kLeastDecidingProbability),
+      fmt::arg("least", 100.0 * select::kLeastDecision_share),
       fmt::arg("first", 100.0 * select::error_share(select::first_samples(false), false)),
       fmt::arg("later", 100.0 * select::error_share(most, false)), fmt::arg("wrong", 100.0 * select::kError_share));
 }

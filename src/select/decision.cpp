@@ -117,7 +117,7 @@ int most_samples(const duty::Duty& duty) { return most_samples(duty.shape_data->
 
 bool is_worth_another_round(const Prospect& prospect, int most) {
   const double chance = prospect.decided_probability(most);
-  return chance < 1.0 && chance >= kLeastDecidingProbability;
+  return chance < 1.0 && chance >= kLeastDecision_share;
 }
 
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,

@@ -64,7 +64,7 @@ int most_samples(bool is_drawn);
 int most_samples(const duty::Duty& duty);
 
 /// Smallest probability of a decision for which further games are played.
-inline constexpr double kLeastDecidingProbability = 0.2;
+inline constexpr double kLeastDecision_share = 0.2;
 /// Returns whether games up to `most` samples decide the verdict with at least that probability, and it is not decided yet.
 bool is_worth_another_round(const Prospect& prospect, int most);
 
