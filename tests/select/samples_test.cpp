@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 
+#include "base/lanes.h"
 #include "given_demand.h"
 #include "select/decision.h"
 #include "select/evaluate.h"
