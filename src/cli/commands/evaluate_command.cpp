@@ -21,8 +21,9 @@
 namespace heatsoak::cli::commands {
 namespace {
 
-/// Values of --fail-on: those of Verdict without pass. Exit code 1 from the given one on.
-const std::vector<std::string> kFailOn{"marginal", "fail", "infeasible"};
+/// Values of --fail-on. Exit code 1 from the given one on.
+const std::vector<std::pair<std::string, select::Verdict>> kFailOn{
+    {"marginal", select::Verdict::marginal}, {"fail", select::Verdict::fail}, {"infeasible", select::Verdict::infeasible}};
 
 struct EvaluateOptions {
   std::string robot;
@@ -63,11 +64,6 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& se
   if (!options.is_closed_loop && options.guard != EvaluateOptions{}.guard) {
     throw base::Failure(base::ExitCode::bad_input, "--guard is for --closed-loop; expected both or none");
   }
-  if (!options.is_closed_loop && options.job.samples == 0 && options.fail_on == "marginal") {
-    throw base::Failure(base::ExitCode::bad_input,
-                        "--fail-on marginal: without samples no motor is marginal; expected --samples of 1 or more, "
-                        "or --fail-on undecided, fail or infeasible");
-  }
   duty::NamedFiles named(folders);
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const std::optional<duty::Duty> duty = named.duty(options.duty);
@@ -99,8 +95,9 @@ base::ExitCode run(const EvaluateOptions& options, Session& session) {
     session.draw(document, options.plot, present::evaluation_chart(answer));
   }
   session.show(document);
-  const auto place = std::ranges::find(kFailOn, options.fail_on) - kFailOn.begin();
-  return answer.worst_verdict() >= static_cast<select::Verdict>(place + 1) ? base::ExitCode::limit_exceeded : base::ExitCode::done;
+  return answer.worst_verdict() >= std::ranges::find(kFailOn, options.fail_on, &std::pair<std::string, select::Verdict>::first)->second
+             ? base::ExitCode::limit_exceeded
+             : base::ExitCode::done;
 }
 
 }  // namespace
