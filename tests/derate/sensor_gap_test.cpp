@@ -75,6 +75,34 @@ TEST(SensedCurrent, IsNeverAboveThatOfAnUninterruptedSensor) {
   EXPECT_LT(gap_A[200], whole_A[200] - 0.1);
 }
 
+// With a cold winding the sensor's table allows less than that without a sensor: it holds whenever there are readings.
+TEST(SensedCurrent, OfAColdMotorIsNeverAboveThatOfItsReadings) {
+  SensedGuard gaps(gap_guard());
+  SensedGuard whole(gap_guard());
+  SensedGuard never(gap_guard());
+  for (SensedGuard* const each : {&gaps, &whole, &never}) {
+    each->start(20.0F);
+  }
+  const CompiledGuard::Input in{0.0F, 0.0F, 20.0F};
+  float last_A = 0.0F;
+  for (int i = 0; i < 2000; ++i) {
+    const bool is_gap = i % 500 >= 250;
+    const float gaps_A = gaps.step(in, is_gap ? std::nanf("") : 20.0F).allowed_A;
+    const float whole_A = whole.step(in, 20.0F).allowed_A;
+    const float never_A = never.step(in, std::nanf("")).allowed_A;
+    ASSERT_LT(whole_A, never_A - 0.1F) << i;
+    ASSERT_LE(gaps_A, (is_gap ? never_A : whole_A) + 1e-3F) << i;
+    if (i > 0) {
+      ASSERT_LT(gaps_A - last_A, 0.01F) << i;
+      ASSERT_LT(last_A - gaps_A, 0.3F) << i;
+    }
+    if (i % 500 == 499) {
+      ASSERT_NEAR(gaps_A, never_A, 0.01F) << i;
+    }
+    last_A = gaps_A;
+  }
+}
+
 // The header states this bound, docs/sensors.md the step.
 TEST(SensedCurrent, FallsAtOnceWhenTheSensorIsDropped) {
   double stated_A = 0.0;

@@ -217,18 +217,23 @@ static inline void @_advance_sensed(@_sensed_state *state, const @_input *measur
 @ADVANCE_LAG@}
 
 /* Moves between the currents with and without the sensor, so that a gap in the readings causes no step: down from half of
-   @CAP@_SENSOR_HOLD_S without a reading on, up within @CAP@_SENSOR_HOLD_S. Never above the current that holds at this time. */
+   @CAP@_SENSOR_HOLD_S without a reading on, up within @CAP@_SENSOR_HOLD_S. Never above the current that holds at this time: a motor so cold
+   that it gets less with the sensor falls to that at once when readings return. */
 static inline float @_current_with_sensor_A(@_sensed_state *state, float speed_rad_per_s) {
   const float hottest_C = @_hottest_body_C(state->state_C);
   const float sensed_A = @_sensed_allowed_A(speed_rad_per_s, hottest_C, state->state_C[0]);
   const float without_A = @_allowed_A(speed_rad_per_s, hottest_C, state->state_C[0]);
-  const float lower_A = without_A < sensed_A ? without_A : sensed_A;
-  const float most_share = 2.0f - 2.0f * state->unread_s / @CAP@_SENSOR_HOLD_S;
-  float share = state->sensed_share + @CAP@_PERIOD_S / @CAP@_SENSOR_HOLD_S;
+  const float step = @CAP@_PERIOD_S / @CAP@_SENSOR_HOLD_S;
+  const bool is_read = state->unread_s < @CAP@_SENSOR_HOLD_S;
+  float share = is_read ? state->sensed_share + step : state->sensed_share - step;
+  float most_share = 1.0f;
+  if (sensed_A >= without_A) {
+    most_share = is_read ? 2.0f - 2.0f * state->unread_s / @CAP@_SENSOR_HOLD_S : 0.0f;
+    most_share = most_share < 1.0f ? most_share : 1.0f;
+  }
   share = share < most_share ? share : most_share;
-  share = share < 1.0f ? share : 1.0f;
   state->sensed_share = share > 0.0f ? share : 0.0f;
-  return lower_A + state->sensed_share * (sensed_A - lower_A);
+  return is_read && sensed_A < without_A ? sensed_A : without_A + state->sensed_share * (sensed_A - without_A);
 }
 
 /* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period.
