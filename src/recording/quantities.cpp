@@ -102,12 +102,23 @@ std::optional<std::string_view> unit_text(std::string_view word) {
   return is_symbol && base::parse_quantity(fmt::format("1 {}", word), word).ok() ? std::optional(word) : std::nullopt;
 }
 
+bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
+
+/// Removes the letter of a phase before the unit: "phase_V_A" is a current and "phase_C_V" a voltage, not a product.
+std::string without_phase(const std::string& unit) {
+  const std::size_t end = unit.find(' ');
+  const std::string_view first = std::string_view(unit).substr(0, end);
+  const bool is_letter = first == "degC" || (first.size() == 1 && is_capital(first.front()));
+  return end != std::string::npos && is_letter && is_capital(unit[end + 1]) ? unit.substr(end + 1) : unit;
+}
+
 /// Returns the unit at the end of a name, for example "rad/s" for "…_rad_per_s". nullopt if there is none.
 std::optional<std::string> unit_at_end(std::string_view key) {
   if (key.starts_with('_') || key.find("__") != std::string_view::npos) {
     return std::nullopt;
   }
-  const std::optional<std::string> unit = base::unit_text_of_name(key, unit_text);
+  const std::optional<std::string> product = base::unit_text_of_name(key, unit_text);
+  const std::optional<std::string> unit = product ? std::optional(without_phase(*product)) : std::nullopt;
   return unit && base::parse_quantity("1 " + *unit, *unit).ok() ? unit : std::nullopt;
 }
 

@@ -27,6 +27,11 @@ TEST(Quantities, NamesTellTheirUnits) {
   EXPECT_EQ(unit_of("pressure_kPa"), "kPa") << "any unit of UDUNITS-2";
   EXPECT_EQ(unit_of("phase_a_A"), "A") << "not ampere-years";
   EXPECT_EQ(unit_of("phase_A_C"), "degC") << "a temperature is no factor of a product";
+  for (const char* phase : {"A", "B", "C", "U", "V", "W"}) {
+    EXPECT_EQ(unit_of(("phase_" + std::string(phase) + "_V").c_str()), "V") << "a letter of a phase is no factor of a product";
+    EXPECT_EQ(unit_of(("phase_" + std::string(phase) + "_A").c_str()), "A");
+  }
+  EXPECT_EQ(unit_of("charge_A_s"), "A s");
   EXPECT_EQ(unit_of("conductance_W_per_m2_K"), "W/(m2 K)");
   EXPECT_EQ(unit_of("coefficient_per_K"), "1/K");
   EXPECT_EQ(unit_of("acceleration_m_per_s2"), "m/s2");
