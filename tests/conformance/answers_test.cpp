@@ -77,8 +77,8 @@ TEST(Json, goes_to_stdout_alone_or_to_its_file) {
     const ProgramRun none = run(words, inside);
     EXPECT_EQ(on_stdout.out, content_of(folder.path() / "answer.json"));
     EXPECT_TRUE(on_stdout.json().at("schema").is_string()) << words[0];
-    EXPECT_EQ(on_stdout.err, in_file.out);
-    EXPECT_EQ(in_file.out, none.out);
+    EXPECT_EQ(on_stdout.err, none.out);
+    EXPECT_EQ(in_file.out, none.out + "written: answer.json\n");
     EXPECT_EQ(in_file.err, "");
     EXPECT_EQ(on_stdout.exit_code, none.exit_code);
     EXPECT_EQ(in_file.exit_code, none.exit_code);
