@@ -125,6 +125,8 @@ Json evaluation_json(const simulate::EvaluationAnswer& answer) {
                                                {"time_to_limit_s", base::kNotNegative},
                                                {"current_rms_A", base::kNotNegative},
                                                {"voltage_needed_V", base::kNotNegative},
+                                               {"from", base::kNotNegative},
+                                               {"to", base::kNotNegative},
                                                {"standard_error_K", base::kNotNegative},
                                                {"rest_half_s", base::kNotNegative},
                                                {"rest_all_s", base::kNotNegative},
