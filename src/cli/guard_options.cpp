@@ -33,7 +33,7 @@ void add_derate_options(CLI::App& app, derate::DerateOptions& options) {
       })
       ->capture_default_str();
   app.add_option("--samples", guarantee.samples,
-                 "number of motors drawn to find the safety factor on heat; as many others, drawn independently, show the confidence")
+                 "number of motors that are drawn to determine the safety factor on heat")
       ->check(whole_number(100'000))
       ->capture_default_str();
   add_seed(app, guarantee.seed, "seed of the draws; the same seed gives the same bytes");

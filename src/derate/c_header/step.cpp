@@ -173,7 +173,7 @@ std::string sweeps(const Source& source, const std::vector<observed::Signal>& sw
 }  // namespace
 
 std::string plausible_constants(const Source& source) {
-  std::string text = "/* A reading outside of its plausible range is replaced by the UNKNOWN value, its hottest case. */\n";
+  std::string text = "/* A reading outside of its plausible range is replaced by the UNKNOWN value: the hottest that motor, driver and battery permit. */\n";
   for (const observed::Signal signal : source.signals) {
     const PlausibleRange range = plausible_range(source.derating, signal);
     if (least_of(source, signal) == constant_of(source, "LEAST_PLAUSIBLE", signal)) {

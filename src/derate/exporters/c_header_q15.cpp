@@ -227,9 +227,9 @@ std::string head(const Derating& derating, const std::string& prefix, const Inte
   text += fmt::format(
       " *\n"
       " * Thermal observer and derating table in integers. For nominal temperatures and other signals use c_header.\n"
-      " * Temperatures are 0 to {0:.2g} K above those of the header in single precision. At equal temperatures the current is never above "
-      "that\n"
-      " * of its table and at most {1:.1f} % below it, for currents of {2:.3g} A and more.\n"
+      " * While no reading is replaced and before the first restore, temperatures are 0 to {0:.2g} K above those of the header in single\n"
+      " * precision, else further above. At equal temperatures the current is never above that of its table and at most {1:.1f} % below "
+      "it, for currents of {2:.3g} A and more.\n"
       " * Once, after a long rest: {3}_start(&motor, board_mC);\n"
       " *   a state that was never started counts as hot as its limit.\n"
       " * After a loss of power instead: {3}_restore(&motor, saved, elapsed_ms, unsaved_ms, board_mC); {3}_save fills `saved`.\n"

@@ -56,12 +56,14 @@ std::string write_mujoco(const Derating& derating) {
           " Add to an actuator: dcmotor class=\"{0}\" joint=\"...\". Current is the equivalent DC current.\n"
           " The winding's temperature rise over the air of {1:.6g} degC is an activation of the actuator. MuJoCo does not limit\n"
           " the current by it: compare it with {2:.6g} K.\n"
+          " The resistances contain the safety factor on heat, {6:.3g}, so this temperature is pessimistic under load.\n"
           " Not modelled: the stator's heat capacity (the winding warms faster here, and cools faster: after a\n"
           " pause it may be too cold by the stator's temperature rise), and no-load loss ({3:.2f} W and {4:.1f} K at {5:.0f} rad/s).\n"
           " Exact for a constant current at standstill.\n",
           in_attribute(derating.motor_id), derating.rules.hottest_ambient_C,
           derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, drag_W,
-          derating.observer.heat_safety_factor() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s);
+          derating.observer.heat_safety_factor() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s,
+          derating.observer.heat_safety_factor());
   return fmt::format(
       "<!--\n{}-->\n"
       "<mujoco>\n"
