@@ -23,8 +23,9 @@ std::string deciding_words(const select::MotorEvaluation& motor) {
   const bool is_drawn = motor.games > 0;
   const std::string_view unit = unit_of(motor);
   if (are_few(motor)) {
-    const int samples = *motor.samples_needed - motor.samples;
-    return fmt::format("At least {} more {} are needed", is_drawn ? samples / base::kLanes : samples, unit);
+    const int usual = select::first_samples(is_drawn);
+    return fmt::format("Without --samples, {} are drawn ({} more {}), and more if needed", usual,
+                       is_drawn ? usual / base::kLanes - motor.games : usual - motor.samples, unit);
   }
   const int most = select::most_samples_at_all(is_drawn);
   const auto [half, nine_in_ten] = select::deciding_samples(motor);
@@ -53,10 +54,6 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
   };
   std::vector<std::pair<int, std::string>> needs;
   for (const select::MotorEvaluation* each : motors) {
-    if (are_few(*each)) {
-      needs.emplace_back(*each->samples_needed, fmt::format("{} {}", each->motor_id, *each->samples_needed));
-      continue;
-    }
     const auto [half, nine_in_ten] = select::deciding_samples(*each);
     needs.emplace_back(half.value_or(most), half ? fmt::format("{} {} to {}", each->motor_id, shown(half), shown(nine_in_ten))
                                                  : fmt::format("{} {}", each->motor_id, shown(half)));
@@ -66,9 +63,11 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
   std::ranges::transform(needs, std::back_inserter(words), &std::pair<int, std::string>::second);
   return fmt::format(
       "{} motors are undecided: after so few {}, the share of motors over a limit, or short of the demand, may lie on either side of a "
-      "threshold. Values of --samples that {}: {}.",
+      "threshold. {}.",
       motors.size(), unit_of(*motors.front()),
-      are_few(*motors.front()) ? "are needed at least" : "decide with a probability of 50 % to 90 %", fmt::join(words, "; "));
+      are_few(*motors.front())
+          ? deciding_words(*motors.front())
+          : fmt::format("Values of --samples that decide with a probability of 50 % to 90 %: {}", fmt::join(words, "; ")));
 }
 
 }  // namespace
@@ -84,9 +83,6 @@ void add_undecided_note(Document& document, std::span<const select::MotorEvaluat
     return;
   }
   std::string words = undecided.size() == 1 ? note_on_one(*undecided.front()) : note_on_several(undecided);
-  if (are_few(*undecided.front())) {
-    words += fmt::format(" Without --samples, {} are drawn, and more if needed.", select::first_samples(undecided.front()->games > 0));
-  }
   document.add_note(Severity::warning, words);
 }
 

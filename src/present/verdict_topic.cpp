@@ -36,7 +36,7 @@ std::string undecided_meaning() {
       "The interval of the share of samples over a limit contains the threshold of two verdicts ({rare:.0f} %, and {majority:.0f} % on a "
       "duty that is drawn). Without --samples the program doubles the samples of undecided motors up to {doublings} times: to {most}, or "
       "to {games} games on a duty that is drawn, where it stops earlier if a decision has become improbable (less than {least:.0f} %). The "
-      "answer states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, give --samples one "
+      "answer then states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, give --samples one "
       "of these numbers. The interval allows for the repeated tests: the first may err with a probability of {first:.1f} %, each later one "
       "with {later:.2f} %, so a verdict is wrong with a probability of at most {wrong:.0f} % (Clopper and Pearson 1934; alpha spending, "
       "Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is decided, JSON states marginal, whatever the "
