@@ -1,5 +1,7 @@
 #include "examination.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
