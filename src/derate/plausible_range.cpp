@@ -29,8 +29,8 @@ struct SignalBounds {
 constexpr std::array kBounds{
     SignalBounds{observed::current,
                  [](const Derating& derating) {
-                   // The driver's limit, or what the battery can drive through the winding while the motor brakes at full speed. Twice
-                   // that cannot flow, even with the overshoot of a current control and the errors of its sensor.
+                   // The driver limits the current, or the battery at full braking speed. The factor covers overshoot of the current
+                   // control and errors of its sensor.
                    const float most_current_A = 2.0F * static_cast<float>(derating.rules.most_current_A);
                    return Bounds{-most_current_A, most_current_A};
                  }},

@@ -9,9 +9,8 @@
 
 namespace heatsoak::derate {
 
-/// Gives each step a name of its own: the physical quantity ("copper_loss_W", "winding_above_stator_K", "winding_rate_K_per_s"), or the law
-/// that it is part of
-/// ("copper_loss_term", "copper_loss_constant").
+/// Gives each step a name of its own: the physical quantity ("copper_loss_W", "winding_above_stator_K", "winding_rate_K_per_s"),
+/// or the law to which it belongs ("copper_loss_term", "copper_loss_constant").
 class StepNames {
  public:
   /// `reserved`: names that the generated code uses for something else. The observer must outlive this object.

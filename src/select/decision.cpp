@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "base/binomial_bound.h"
@@ -95,6 +96,11 @@ std::optional<int> samples_needed(const MotorEvaluation& motor, bool is_drawn) {
 
 Verdict stated_verdict(const MotorEvaluation& motor) {
   return motor.samples == 0 ? std::max(motor.verdict, Verdict::marginal) : motor.verdict;
+}
+
+bool ranks_before(const MotorEvaluation& first, const MotorEvaluation& second) {
+  const auto place = [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); };
+  return place(first) < place(second);
 }
 
 Verdict worst_allowed_verdict(const MotorEvaluation& motor) {

@@ -45,6 +45,9 @@ inline bool is_decided(const MotorEvaluation& motor) { return motor.samples > 0 
 /// infeasible or fails, also while the other of the two is open.
 Verdict stated_verdict(const MotorEvaluation& motor);
 
+/// Returns whether `first` ranks before `second`: by verdict, then by nearest_margin_K().
+bool ranks_before(const MotorEvaluation& first, const MotorEvaluation& second);
+
 /// Returns the worst verdict that the samples still allow, for thresholds that must not pass by chance; stated_verdict() without samples.
 Verdict worst_allowed_verdict(const MotorEvaluation& motor);
 

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
@@ -390,9 +389,7 @@ void conclude(Work& work, const EvaluateOptions& options) {
 
 }  // namespace
 
-void sort_by_verdict(std::vector<MotorEvaluation>& results) {
-  std::ranges::stable_sort(results, {}, [](const MotorEvaluation& each) { return std::tuple(each.verdict, -nearest_margin_K(each)); });
-}
+void sort_by_verdict(std::vector<MotorEvaluation>& results) { std::ranges::stable_sort(results, ranks_before); }
 
 double nearest_margin_K(const MotorEvaluation& motor) {
   const auto margin_K = [&](double limit_C, const Spread95& peak_C) {

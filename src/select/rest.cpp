@@ -79,8 +79,8 @@ class HotMotor {
     return all;
   }
 
-  /// Returns the shortest sufficient rest in whole seconds; empty if there is none. A longer rest leaves the motor colder, so it suffices
-  /// as well.
+  /// Returns the shortest sufficient rest in whole seconds; empty if there is none. A longer rest leaves the motor colder,
+  /// so it is sufficient too.
   [[nodiscard]] std::optional<int> rest_s(double start_s, double play_s) const {
     Rests rests{0, 30, 60, 120, 300, 600, 1200, kLongestRest_s};
     int short_s = -1;

@@ -9,7 +9,7 @@
 #include "check/check_job.h"
 #include "check/rewrite.h"
 #include "check/typed_outcome.h"
-#include "support/source_folder.h"
+#include "support/shipped_folders.h"
 
 namespace heatsoak::check {
 namespace {
@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-const input::DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 const std::string kHead =
     "[[check]]\nname = \"paper\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_42m_24v\"\n";
@@ -31,7 +29,7 @@ class CheckFiles : public testing::Test {
 
   [[nodiscard]] CheckFile read(const std::string& text) const {
     base::write_file(folder_ / "a.check.toml", text);
-    return read_check_file(folder_ / "a.check.toml", kShipped);
+    return read_check_file(folder_ / "a.check.toml", kShippedFolders);
   }
   [[nodiscard]] std::string message_of(const std::string& text) const {
     try {
@@ -47,7 +45,7 @@ class CheckFiles : public testing::Test {
   }
   /// Returns the outcomes of the text. They point into `answer_`.
   [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
-    answer_ = run_check_job(job_of(text), kShipped);
+    answer_ = run_check_job(job_of(text), kShippedFolders);
     return answer_.outcomes;
   }
 
@@ -313,8 +311,8 @@ TEST_F(CheckFiles, ResultsDoNotDependOnThreads) {
   const std::string text = kHead + "samples = \"80\"\n[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n" +
                            "[[check]]\nname = \"b\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nsamples = \"80\"\n"
                            "[check.limits]\nwinding_peak_p95 = \"at most 120 degC\"\n";
-  const CheckAnswer one = run_check_job(job_of(text, 1), kShipped);
-  const CheckAnswer all = run_check_job(job_of(text, 0), kShipped);
+  const CheckAnswer one = run_check_job(job_of(text, 1), kShippedFolders);
+  const CheckAnswer all = run_check_job(job_of(text, 0), kShippedFolders);
   ASSERT_EQ(one.outcomes.size(), 2U);
   ASSERT_EQ(all.outcomes.size(), 2U);
   for (std::size_t i = 0; i < one.outcomes.size(); ++i) {

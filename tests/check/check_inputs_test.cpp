@@ -7,7 +7,7 @@
 #include "check/command_answers.h"
 #include "check/run_checks.h"
 #include "check/typed_outcome.h"
-#include "support/source_folder.h"
+#include "support/shipped_folders.h"
 
 namespace heatsoak::check {
 namespace {
@@ -15,8 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
-
-const input::DataFolders kShippedData{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 class CheckInputsOf : public testing::Test {
  protected:
@@ -39,7 +37,7 @@ TEST_F(CheckInputsOf, CommandsAreCheckedWhenTheFileIsRead) {
                    "[[check]]\nname = \"b\"\ncommand = \"steady\"\n[check.limits]\nx = \"at least\"\n");
   std::string said;
   try {
-    static_cast<void>(read_check_file(folder_ / "a.check.toml", kShippedData, inputs));
+    static_cast<void>(read_check_file(folder_ / "a.check.toml", kShippedFolders, inputs));
   } catch (const base::Failure& failure) {
     said = failure.what();
   }
@@ -52,7 +50,7 @@ TEST_F(CheckInputsOf, CommandsAreCheckedWhenTheFileIsRead) {
 
 TEST_F(CheckInputsOf, LintOfNothingFails) {
   base::write_file(folder_ / "a.check.toml", "[[check]]\nname = \"x\"\n[check.limits]\nlint_problems = \"at most 0\"\n");
-  const CheckFile file = read_check_file(folder_ / "a.check.toml", kShippedData);
+  const CheckFile file = read_check_file(folder_ / "a.check.toml", kShippedFolders);
   const std::vector<Outcome> all = run_checks(file, 1, CommandAnswers());
   EXPECT_FALSE(all.front().passed());
   EXPECT_TRUE(reason_of<NothingToLint>(all.front()));

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "base/files.h"
-#include "support/source_folder.h"
+#include "support/shipped_folders.h"
 
 namespace heatsoak::check {
 namespace {
@@ -14,8 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-
-const input::DataFolders kShippedFiles{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 class CheckJobs : public testing::Test {
  protected:
@@ -41,7 +39,7 @@ TEST_F(CheckJobs, ProblemsOfAllFilesAreOneReport) {
   const std::string in_volt = put("in_volt", "150 V");
   CheckJob job{.files = {no_unit, good, in_volt}};
   try {
-    run_check_job(job, kShippedFiles);
+    run_check_job(job, kShippedFolders);
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
@@ -49,7 +47,7 @@ TEST_F(CheckJobs, ProblemsOfAllFilesAreOneReport) {
   }
   // For a report that names every limit, the valid file is evaluated all the same. The job does not pass.
   job.evaluates_beside_invalid = true;
-  const CheckAnswer answer = run_check_job(job, kShippedFiles);
+  const CheckAnswer answer = run_check_job(job, kShippedFolders);
   ASSERT_EQ(answer.outcomes.size(), 1U);
   EXPECT_TRUE(answer.outcomes.front().passed());
   EXPECT_TRUE(answer.invalid);
@@ -59,13 +57,13 @@ TEST_F(CheckJobs, ProblemsOfAllFilesAreOneReport) {
 TEST_F(CheckJobs, OnlyFilesWhoseLimitsChangeAreRewritten) {
   const std::string tight = put("tight", "30 degC");
   CheckJob job{.files = {tight}, .updates = true};
-  const CheckAnswer first = run_check_job(job, kShippedFiles);
+  const CheckAnswer first = run_check_job(job, kShippedFolders);
   ASSERT_EQ(first.rewritten.size(), 1U);
   EXPECT_EQ(first.rewritten.front().path, tight);
   EXPECT_THAT(base::read_file(tight, 1'000'000), HasSubstr("at most 30 degC")) << "the job itself writes nothing";
   EXPECT_TRUE(first.passed());
   base::write_file(tight, first.rewritten.front().text);
-  const CheckAnswer second = run_check_job(job, kShippedFiles);
+  const CheckAnswer second = run_check_job(job, kShippedFolders);
   EXPECT_TRUE(second.rewritten.empty());
   EXPECT_TRUE(second.passed());
 }
@@ -73,7 +71,7 @@ TEST_F(CheckJobs, OnlyFilesWhoseLimitsChangeAreRewritten) {
 TEST_F(CheckJobs, FilesOfTheProgramAreNotRewritten) {
   CheckJob job{.files = {"reports/check/twente.check.toml"}, .updates = true};
   try {
-    run_check_job(job, kShippedFiles);
+    run_check_job(job, kShippedFolders);
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.message(), HasSubstr("is part of the installed program and is not rewritten"));

@@ -11,6 +11,7 @@
 #include "motor/read_motor.h"
 #include "robot/robot_lint.h"
 #include "support/shipped.h"
+#include "support/shipped_folders.h"
 
 namespace heatsoak::duty {
 namespace {
@@ -18,8 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-const input::DataFolders kShipped{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 class LintFiles : public testing::Test {
  protected:
@@ -48,22 +47,22 @@ TEST_F(LintFiles, FolderAndIdsStandForTheirFiles) {
   }
   const std::string first = (folder_ / "maxon_ec45_flat_70w_24v.toml").string();
   const std::string second = (folder_ / "maxon_ecx_flat_32l_48v.toml").string();
-  const FilesLint of_folder = lint_files(std::vector{folder_.string()}, kShipped);
-  const FilesLint of_files = lint_files(std::vector{first, second}, kShipped);
+  const FilesLint of_folder = lint_files(std::vector{folder_.string()}, kShippedFolders);
+  const FilesLint of_files = lint_files(std::vector{first, second}, kShippedFolders);
   EXPECT_THAT(of_folder.files, ElementsAre(first, second));
   EXPECT_EQ(words(of_folder.findings), words(of_files.findings));
   const std::string robot = (kSource / "robot_core/robots/roboteam_twente_v2024.toml").string();
-  const FilesLint of_ids = lint_files(std::vector<std::string>{"roboteam_twente_v2024", "division_a_match"}, kShipped);
+  const FilesLint of_ids = lint_files(std::vector<std::string>{"roboteam_twente_v2024", "division_a_match"}, kShippedFolders);
   EXPECT_THAT(of_ids.files, ElementsAre(robot, (kSource / "duty_profiles/division_a_match.toml").string()));
-  EXPECT_EQ(words(of_ids.findings), words(robot::lint(robot::read_robot(robot), input::ids_in(kShipped.motors))));
+  EXPECT_EQ(words(of_ids.findings), words(robot::lint(robot::read_robot(robot), input::ids_in(kShippedFolders.motors))));
 }
 
 // Findings come from the law of the file's kind: a motor file with the findings of motor::lint(), and one more without rotor inertia.
 TEST_F(LintFiles, MotorWithoutRotorInertiaIsNotedAtItsFile) {
   std::size_t without = 0;
-  for (const std::string& id : input::ids_in(kShipped.motors)) {
+  for (const std::string& id : input::ids_in(kShippedFolders.motors)) {
     const motor::Motor motor = shipped_motor(id);
-    const FilesLint lint = lint_files(std::vector{id}, kShipped);
+    const FilesLint lint = lint_files(std::vector{id}, kShippedFolders);
     const std::size_t more = motor.nominal.rotor_inertia_kg_m2 ? 0 : 1;
     without += more;
     ASSERT_EQ(lint.findings.size(), motor::lint(motor).size() + more) << id;
@@ -78,7 +77,8 @@ TEST_F(LintFiles, AllProblemsAreReportedAtOnce) {
   const std::string broken = put("broken.toml", "id = \n");
   fs::create_directory(folder_ / "empty");
   try {
-    lint_files(std::vector<std::string>{"maxon_ecx_flat_32l_48", broken, (folder_ / "empty").string(), "division_a_match"}, kShipped);
+    lint_files(std::vector<std::string>{"maxon_ecx_flat_32l_48", broken, (folder_ / "empty").string(), "division_a_match"},
+               kShippedFolders);
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);

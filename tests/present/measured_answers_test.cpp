@@ -8,21 +8,19 @@
 #include "present/measured/friction.h"
 #include "present/measured/friction_chart.h"
 #include "present/measured/log.h"
-#include "support/source_folder.h"
+#include "support/shipped_folders.h"
 
 namespace heatsoak::present {
 namespace {
 
 using testing::HasSubstr;
 
-const input::DataFolders kFolders{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
-
 friction::FrictionJob friction_job() {
-  friction::FrictionJob job{.robot = duty::robot_named(kFolders, "roboteam_twente_v2024"),
+  friction::FrictionJob job{.robot = duty::robot_named(kShippedFolders, "roboteam_twente_v2024"),
                             .logs = {"reports/friction_test/steady_state_test.csv"},
-                            .folders = kFolders};
+                            .folders = kShippedFolders};
   job.motor_id = job.robot.drive.motor;
-  job.motor = duty::own_motor(kFolders, job.robot)->nominal;
+  job.motor = duty::own_motor(kShippedFolders, job.robot)->nominal;
   return job;
 }
 
@@ -44,7 +42,7 @@ TEST(Friction, DocumentDataAndPicturesHaveTheSameVerdict) {
 TEST(Friction, StatesThatTheMotorHasNoFile) {
   friction::FrictionJob job = friction_job();
   job.robot.drive.motor = job.motor_id = "unlisted";
-  EXPECT_FALSE(duty::own_motor(kFolders, job.robot));
+  EXPECT_FALSE(duty::own_motor(kShippedFolders, job.robot));
   job.motor.reset();
   const Document document = friction_document(job, friction::run_friction(job));
   EXPECT_TRUE(document.data.at("motor").is_null());
@@ -53,7 +51,7 @@ TEST(Friction, StatesThatTheMotorHasNoFile) {
 
 TEST(LogInspect, OneDocumentForAllLogs) {
   const std::vector<recording::InspectedLog> logs =
-      recording::inspect_logs(kFolders, {"reports/soak/bench.csv", "reports/soak/match_1.csv"}, "");
+      recording::inspect_logs(kShippedFolders, {"reports/soak/bench.csv", "reports/soak/match_1.csv"}, "");
   const Document document = logs_document(logs);
   ASSERT_EQ(document.data.at("logs").size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {

@@ -11,14 +11,13 @@
 #include "present/list.h"
 #include "present/renderer.h"
 #include "report/chart.h"
+#include "support/shipped_folders.h"
 #include "support/source_folder.h"
 
 namespace heatsoak::present {
 namespace {
 
 using testing::HasSubstr;
-
-const input::DataFolders kFolders{kSource / "motor_db", kSource / "robot_core/robots", kSource / "duty_profiles", kSource};
 
 std::set<std::string> ids_of(const Document& list) {
   std::set<std::string> ids;
@@ -29,8 +28,8 @@ std::set<std::string> ids_of(const Document& list) {
 }
 
 TEST(Topics, EachIsDescribedWithItsData) {
-  for (const Topic& topic : all_topics(kFolders)) {
-    const Document document = description_of(topic.id, kFolders);
+  for (const Topic& topic : all_topics(kShippedFolders)) {
+    const Document document = description_of(topic.id, kShippedFolders);
     EXPECT_FALSE(topic.summary().empty()) << topic.id;
     EXPECT_FALSE(document.headline.empty()) << topic.id;
     EXPECT_EQ(document.data.at("schema"), "heatsoak.describe/1") << topic.id;
@@ -41,14 +40,14 @@ TEST(Topics, EachIsDescribedWithItsData) {
 /// describe takes the first topic of a name, so a second one could not be described.
 TEST(Topics, IdsAreUnique) {
   std::set<std::string> seen;
-  for (const Topic& topic : all_topics(kFolders)) {
+  for (const Topic& topic : all_topics(kShippedFolders)) {
     EXPECT_TRUE(seen.insert(topic.id).second) << topic.id;
   }
 }
 
 TEST(Topics, AMisspeltNameIsAnsweredWithASimilarOne) {
   try {
-    static_cast<void>(description_of("windagee", kFolders));
+    static_cast<void>(description_of("windagee", kShippedFolders));
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
@@ -58,9 +57,9 @@ TEST(Topics, AMisspeltNameIsAnsweredWithASimilarOne) {
 }
 
 TEST(List, EachKindHasItsRowsInTableAndData) {
-  const std::set<std::string> topics = ids_of(list_document("topics", kFolders));
+  const std::set<std::string> topics = ids_of(list_document("topics", kShippedFolders));
   for (const std::string& kind : listed_kinds()) {
-    const Document document = list_document(kind, kFolders);
+    const Document document = list_document(kind, kShippedFolders);
     EXPECT_EQ(document.data.at("kind"), kind);
     ASSERT_EQ(document.tables.size(), 1U);
     EXPECT_FALSE(document.tables.front().rows.empty()) << kind;
@@ -74,7 +73,7 @@ TEST(List, EachKindHasItsRowsInTableAndData) {
 }
 
 TEST(List, FormatsAreThoseOfTheProgram) {
-  const std::set<std::string> formats = ids_of(list_document("formats", kFolders));
+  const std::set<std::string> formats = ids_of(list_document("formats", kShippedFolders));
   for (const Renderer& renderer : all_renderers()) {
     EXPECT_TRUE(formats.contains(std::string(renderer.name)));
   }
@@ -85,14 +84,14 @@ TEST(List, FormatsAreThoseOfTheProgram) {
 
 TEST(List, TablesOfVerbsAreFormats) {
   const std::vector<TableOutput> tables{{".csv", "table of every signal", "simulate --out"}};
-  const Json items = list_document("formats", kFolders, tables).data.at("items");
+  const Json items = list_document("formats", kShippedFolders, tables).data.at("items");
   EXPECT_EQ(items.back().at("id"), "csv");
   EXPECT_EQ(items.back().at("summary"), "table of every signal; simulate --out FILE.csv");
-  EXPECT_FALSE(ids_of(list_document("motors", kFolders, tables)).contains("csv"));
+  EXPECT_FALSE(ids_of(list_document("motors", kShippedFolders, tables)).contains("csv"));
 }
 
 TEST(List, AFolderWithoutFilesIsAnError) {
-  input::DataFolders some = kFolders;
+  input::DataFolders some = kShippedFolders;
   some.robots = kSource / "src";  // it has no .toml file
   EXPECT_NO_THROW(static_cast<void>(list_document("motors", some)));
   EXPECT_THROW(static_cast<void>(list_document("robots", some)), base::Failure);

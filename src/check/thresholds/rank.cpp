@@ -1,18 +1,15 @@
-#include <algorithm>
-#include <tuple>
-
 #include "check/computations.h"
+#include "select/decision.h"
 
 namespace heatsoak::check::thresholds {
 namespace {
 
 Measured measure_rank(const Check& check, Computations& computations) {
   const select::MotorEvaluation& own = computations.feasible_evaluation(check);
-  const auto order = [](const select::MotorEvaluation& each) { return std::tuple(each.verdict, -select::nearest_margin_K(each)); };
   std::vector<std::string> better;
   for (const motor::Motor& motor : check.against) {
     const select::MotorEvaluation& other = computations.evaluation(check, motor);
-    if (order(other) < order(own)) {
+    if (select::ranks_before(other, own)) {
       better.push_back(other.motor_id);
     }
   }
@@ -28,8 +25,8 @@ ThresholdType rank() {
           .range = base::Range::between(1.0, 1e4),
           .room = Room::none,
           .meaning =
-              "rank of the motor among itself and those of 'against', in the order of `evaluate`: verdict, then the nominal margin to "
-              "the nearer limit. \"at most 1\": it stays first",
+              "rank of the motor among itself and those of 'against', in the order of `evaluate`: verdict, then the margin to the "
+              "nearer limit, on a match that of the 95th percentile. \"at most 1\": it stays first",
           .example = "at most 1",
           .needs = {Setting::robot, Setting::duty, Setting::motor, Setting::against},
           .takes = {Setting::samples, Setting::seed, Setting::conditions},
