@@ -52,6 +52,18 @@ float plausible_square_A2(const GuardModel& model, float square_A2) {
   return range.is_used && square_A2 > range.most * range.most ? range.possible[0] * range.possible[0] : square_A2;
 }
 
+/// Current for an unknown speed: the limp current, but no more than the table allows at any of its speeds.
+[[gnu::cold]] float limp_current_A(const Config& config, const GuardOutput& guard) {
+  const GuardModel& model = *config.guard;
+  float least_A = config.limp_current_A;
+  for (int i = model.table.speed_rad_per_s.count; i-- > 0;) {
+    const float speed_rad_per_s = model.table.speed_rad_per_s.points[i];
+    const float allowed_A = allowed_current_A(model, speed_rad_per_s, guard.hottest_body_C, guard.winding_C + config.braking_reserve_K);
+    least_A = smaller(least_A, allowed_A);
+  }
+  return least_A;
+}
+
 /// Steps the guard of one wheel. `periods`: number of periods in the sums of squares. `extra_s`: as in GuardPeriod.
 void step_wheel_guard(const Config& config, State& state, const Validated& validated, int i, float periods, float extra_s) {
   WheelState& wheel = state.wheel[i];
@@ -93,10 +105,12 @@ void step_wheel_guard(const Config& config, State& state, const Validated& valid
   const GuardOutput guard = step_guard(model, state.guard[i], signal, config.braking_reserve_K, time);
   wheel.conductance_A_per_V = nominal_conductance_A_per_V(config, state.guard[i], validated.ambient_C);
   const float cold_ratio = cold_current_ratio(config, guard.winding_C);
-  // A winding carries the limp current permanently, unless it is at its limit already.
-  const float limp_A = guard.winding_C + config.braking_reserve_K < model.winding_limit_C ? config.limp_current_A : 0.0F;
-  wheel.allowed_A = sensed.is_speed_known ? cold_ratio * guard.allowed_A : limp_A;
-  wheel.allowed_braking_A = sensed.is_speed_known ? cold_ratio * guard.allowed_braking_A : limp_A;
+  if (sensed.is_speed_known) {
+    wheel.allowed_A = cold_ratio * guard.allowed_A;
+    wheel.allowed_braking_A = cold_ratio * guard.allowed_braking_A;
+  } else {
+    wheel.allowed_A = wheel.allowed_braking_A = limp_current_A(config, guard);
+  }
   if (!guard.was_started) {
     wheel.guard_fault = static_cast<std::uint8_t>(Reason::guard_unknown);
   } else if (wheel.guard_fault == static_cast<std::uint8_t>(Reason::guard_unknown) &&

@@ -120,6 +120,9 @@ void validate_battery(const Config& config, State& state, const Input& input, Va
   if (!(sample_V >= 0.5F * config.battery_lowest_V && sample_V <= 1.1F * config.battery_full_V)) {
     validated.battery_V = config.battery_lowest_V;
     validated.pwm_battery_V = 1.1F * config.battery_full_V;
+    if (state.steps < kFirstSteps) {
+      state.battery_source_V = config.battery_full_V;
+    }
     validated.robot_fault = validated.robot_fault == Reason::none ? Reason::battery_voltage_missing : validated.robot_fault;
     return;
   }

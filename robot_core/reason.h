@@ -1,8 +1,9 @@
 // Reasons why a wheel gets less than the command asks for. Limits are normal operation, faults are not.
 //
-// Fault table. W concerns one wheel, R the whole robot. No fault raises a limit of the current, and no reaction does. Within the limits a
-// faulty sensor can make the control drive more current, for example a wheel sensor with a wrong scale or sign. Wheels without a fault
-// still take their normal current while another one is held to Config::limp_current_A.
+// Fault table. W concerns one wheel, R the whole robot. No fault in this table raises a limit of the current, and no reaction to one does,
+// up to the highest speed of the guard's table. Within the limits a faulty sensor can make the control drive more current, for example a
+// wheel sensor with a wrong scale or sign, until it is detected. Wheels without a fault still take their normal current while another one
+// is held to Config::limp_current_A.
 // clang-format off
 //
 // | code   | condition                                                   | reaction                                          | clears                          |
@@ -32,8 +33,10 @@
 // | 113 W  | speed of one wheel follows the current of another           | as 110, both wheels                               | start()                         |
 // |        | (swapped), while the robot is commanded to move; the sensed |                                                   |                                 |
 // |        | currents and four speeds must not contradict the swap       |                                                   |                                 |
-// | 114 W  | speed unknown: too few other wheels to estimate it          | limp_current_A by the current sensor; bridge open | as 110                          |
-// |        |                                                             | without it, or if no voltage suits all samples    |                                 |
+// | 114 W  | speed unknown: too few other wheels to estimate it          | limp_current_A by the current sensor, or less if  | as 110                          |
+// |        |                                                             | the hot motor may not get it at every speed;      |                                 |
+// |        |                                                             | bridge open without that sensor, or if no voltage |                                 |
+// |        |                                                             | suits all samples                                 |                                 |
 // | 115 W  | no wheel speed changes for kStanding_s while more than      | every current at most Config::limp_current_A, at  | a wheel speed changes           |
 // |        | limp_current_A would flow through standing motors: all      | its estimated speed and standing: no runaway      |                                 |
 // |        | sensors dead, or the robot is held                          |                                                   |                                 |

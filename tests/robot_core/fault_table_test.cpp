@@ -201,6 +201,31 @@ TEST(FaultTable, battery_voltage_missing) {
   }
 }
 
+// A converter that is not ready yet: without a sample the battery may be full, so a low sample that comes later proves nothing.
+TEST(BatteryVoltage, MissingAtTheStartIsThatOfAFullBattery) {
+  const Config config = make_config(4);
+  constexpr float kTrue_V = 20.0F;
+  for (const int missing : {0, 1, 10, 30}) {
+    State state;
+    ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = 25.0F}));
+    for (int k = 0; k < 100; ++k) {
+      Input input;
+      const float noise = 0.01F * static_cast<float>(k % 3);
+      std::fill_n(input.wheel_speed_rad_per_s, 4, noise);
+      input.yaw_rate_rad_per_s = 0.1F * noise;
+      input.battery_V = k < missing ? kNone : k == 50 ? 13.0F : kTrue_V;
+      input.elapsed_s = config.period_s;
+      input.command.mode = Mode::body_velocity;
+      input.command.velocity.x = 2.0F;
+      const Output out = robot_core::step(config, state, input);
+      for (int i = 0; i < 4; ++i) {
+        constexpr float kTolerance_ratio = 1.03F;
+        EXPECT_LE(std::abs(out.pwm_ratio[i]) * kTrue_V, kTolerance_ratio * std::abs(out.voltage_V[i])) << missing << ", period " << k;
+      }
+    }
+  }
+}
+
 TEST(FaultTable, yaw_rate_missing) {
   for (const float sample : {kNone, kInfinite, 100.0F, -40.0F}) {
     check({.code = Reason::yaw_rate_missing, .spoil = [=](Input& input, State&, int) { input.yaw_rate_rad_per_s = sample; }}, 0,

@@ -78,15 +78,19 @@ TEST(FaultTable, wheel_speed_swapped) {
 
 TEST(FaultTable, wheel_speed_unknown) {
   for (const bool are_currents_fitted : {true, false}) {
-    Record record = run({.code = Reason::wheel_speed_unknown,
-                         .are_currents_fitted = are_currents_fitted,
-                         .spoil = [](Input& input, State&, int) { std::fill_n(input.wheel_speed_rad_per_s, 3, kNone); }},
-                        false);
+    const Case test{.code = Reason::wheel_speed_unknown,
+                    .are_currents_fitted = are_currents_fitted,
+                    .spoil = [](Input& input, State&, int) { std::fill_n(input.wheel_speed_rad_per_s, 3, kNone); }};
+    const Record record = run(test, false);
     EXPECT_EQ(record.first_period, kFrom);
     // All wheels agree again, so all are accepted again, although for a while none was.
     EXPECT_LE(record.last_period, kFrom + 400 + 2 * kSteadyAgain);
     EXPECT_EQ(record.others, std::set<Reason>{Reason::wheel_speed_missing});
-    EXPECT_LE(record.peak_of_wheel_A, are_currents_fitted ? 4.6 : 0.0);
+    const Config config = make_config(4);
+    // A sensed current above this opens the bridge.
+    const double limp_A = 1.3 * static_cast<double>(config.limp_current_A) + fault_margin_A(config);
+    EXPECT_LE(record.peak_of_wheel_A, are_currents_fitted ? limp_A : 0.0);
+    EXPECT_LE(record.peak_A, run(test, true).peak_A + fault_margin_A(config));
   }
 }
 
