@@ -62,13 +62,14 @@ using OdriveConsumer = Consumer;
 using SimpleFocConsumer = Consumer;
 using MujocoConsumer = Consumer;
 
-// The script with a program that prints this in place of the tests. The interpreter of LispBM is the consumer that it does not fetch.
+// The script with a program that prints this in place of the tests. With an interpreter that is given, nothing is fetched.
 TEST_F(ConsumersScript, FailsIfATestIsSkippedFailsOrDoesNotExist) {
   const std::string script = (kSource / "tests/derate/consumers/run").string();
   const auto exit_code = [&](const std::string& printed, int result, const char* name) {
     write("tests", fmt::format("#!/bin/sh\ncat <<'END'\n{}\nEND\nexit {}\n", printed, result));
     fs::permissions(folder / "tests", fs::perms::owner_all);
-    return WEXITSTATUS(run(fmt::format("HEATSOAK_CONSUMERS=fetched HEATSOAK_TEST_DERATE=./tests '{}' {} > out.txt 2>&1", script, name)));
+    return WEXITSTATUS(run(fmt::format("HEATSOAK_CONSUMERS=fetched HEATSOAK_LISPBM_REPL=given HEATSOAK_TEST_DERATE=./tests '{}' {} > out.txt 2>&1",
+                                          script, name)));
   };
   EXPECT_EQ(exit_code("[       OK ] One.test (1 ms)", 0, "lispbm"), 0) << text_of(folder / "out.txt");
   EXPECT_EQ(exit_code("[       OK ] One.test (1 ms)\n[  SKIPPED ] Other.test (0 ms)", 0, "lispbm"), 1);

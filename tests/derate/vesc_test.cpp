@@ -60,7 +60,7 @@ TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
                                                HasSubstr("default of 0.05 A or less"), HasSubstr("foc_temp_comp: off")));
 }
 
-// LispBM's own interpreter is not part of the project. HEATSOAK_LISPBM_REPL names its program `repl`.
+// LispBM's own interpreter is not part of the project. HEATSOAK_LISPBM_REPL names its program `repl`; tests/derate/consumers/run builds it.
 TEST(VescExporter, RealInterpreterComputesTheObserver) {
   const char* const repl = std::getenv("HEATSOAK_LISPBM_REPL");
   if (repl == nullptr) {
