@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/quantity.h"
+#include "base/unit_names.h"
 
 namespace heatsoak::check {
 namespace {
@@ -26,6 +27,12 @@ std::string unit_behind(std::string_view quantity) {
   const auto [end, error] = std::from_chars(begin, rest.data() + rest.size(), number);
   return error == std::errc::invalid_argument ? std::string()
                                               : std::string(trimmed(rest.substr(static_cast<std::size_t>(end - rest.data()))));
+}
+
+/// Returns whether a unit is unknown or cannot be converted. A temperature in place of a difference has a message of its own.
+bool is_of_other_quantity(const std::string& unit, std::string_view wanted) {
+  const std::string one = fmt::format("1 {}", unit);
+  return !unit.empty() && !base::parse_quantity(one, wanted).ok() && !(wanted == "K" && base::parse_quantity(one, "degC").ok());
 }
 
 /// Converts a value; unchanged if `to` is empty. Callers that need a distance subtract two results, because temperature scales have
@@ -49,6 +56,22 @@ bool keeps(Bound direction, double value, double limit_value) {
   return direction == Bound::at_most ? value <= limit_value : value >= limit_value;
 }
 
+std::vector<std::string> units_of_quantity(std::optional<std::string_view> unit) {
+  std::vector<std::string> units;
+  if (unit) {
+    units.emplace_back(*unit);
+  }
+  const bool is_angular = !unit || unit->find("rad") != std::string_view::npos || *unit == "rpm" || *unit == "deg";
+  for (const base::UnitWord& each : base::kUnitWords) {
+    const bool is_listed = each.unit.empty() || (unit && (*unit == each.unit || *unit == "degC"));
+    // UDUNITS takes an angle for a pure number, so it converts it to a byte.
+    if (!is_listed && (each.si.rad == 0 || is_angular) && (!unit || base::parse_quantity(fmt::format("1 {}", each.unit), *unit).ok())) {
+      units.emplace_back(each.unit);
+    }
+  }
+  return units;
+}
+
 ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
   using Kind = LimitProblem::Kind;
   const std::string_view all = trimmed(text);
@@ -62,23 +85,30 @@ ParsedLimit parse_limit(std::string_view text, const ThresholdType& type) {
   }
   const std::string_view quantity = trimmed(all.substr(words.size()));
   const base::ParsedQuantity parsed = base::parse_quantity(quantity, type.unit, type.is_share);
+  const std::string unit = unit_behind(quantity);
   if (!parsed.ok()) {
-    ParsedLimit none = problem(Kind::no_quantity);
+    const bool is_other = is_of_other_quantity(unit, type.unit);
+    ParsedLimit none = problem(is_other ? Kind::other_unit : Kind::no_quantity);
     none.problem->quantity_problem = parsed.problem;
+    none.problem->unit = unit;
+    if (is_other && !type.unit.empty()) {
+      none.problem->units = units_of_quantity(type.unit);
+    }
+    return none;
+  }
+  if (type.unit == "degC" && unit == "K") {
+    ParsedLimit none = problem(Kind::absolute_temperature, parsed.value);
+    const bool is_meant = type.range.contains(parsed.value);
+    none.problem->number = is_meant ? base::significant(parsed.value, 6) : trimmed(quantity.substr(0, quantity.size() - 1));
     return none;
   }
   if (!type.range.contains(parsed.value)) {
-    if (type.unit == "degC" && unit_behind(quantity) == "K") {
-      ParsedLimit none = problem(Kind::absolute_temperature, parsed.value);
-      none.problem->number = trimmed(quantity.substr(0, quantity.size() - 1));
-      return none;
-    }
     return problem(Kind::out_of_range, parsed.value);
   }
   if (type.is_whole && parsed.value != std::floor(parsed.value)) {
     return problem(Kind::fraction_of_count, parsed.value);
   }
-  return {parsed.value, unit_behind(quantity)};
+  return {parsed.value, unit};
 }
 
 std::string unit_of_limit(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "check/threshold.h"
 
@@ -16,15 +17,18 @@ struct LimitProblem {
     no_limit,              ///< it does not begin with "at most" or "at least"
     lacks_words,           ///< it is a quantity alone
     no_quantity,           ///< `quantity_problem` says why
+    other_unit,            ///< `unit` is none, or that of another quantity
     absolute_temperature,  ///< a temperature in kelvin, where a difference was probably meant
     out_of_range,
     fraction_of_count,
   };
   Kind kind = Kind::no_limit;
-  std::string text;                   ///< the whole text, without spaces around it
-  double value = 0.0;                 ///< in the unit of the threshold, if the text is a quantity
-  std::string number = {};            ///< for `absolute_temperature`: the number as written
-  std::string quantity_problem = {};  ///< ParsedQuantity::problem
+  std::string text;                     ///< the whole text, without spaces around it
+  double value = 0.0;                   ///< in the unit of the threshold, if the text is a quantity
+  std::string number = {};              ///< for `absolute_temperature`: the number as written
+  std::string quantity_problem = {};    ///< ParsedQuantity::problem
+  std::string unit = {};                ///< for `other_unit`: as written
+  std::vector<std::string> units = {};  ///< for `other_unit`: those of the quantity; empty for a pure number
 };
 
 struct ParsedLimit {
@@ -32,6 +36,10 @@ struct ParsedLimit {
   std::string unit = {};                     ///< unit as the user wrote it: "degC", "%"; may be empty
   std::optional<LimitProblem> problem = {};  ///< nothing if `value` is valid
 };
+
+/// Returns the units in which a limit of a quantity can be written, prefixes aside: "s", "h", "min" … for "s"; all that this program has
+/// for an unknown quantity, without `unit`. A temperature has degC alone, because one in K is mostly a difference.
+std::vector<std::string> units_of_quantity(std::optional<std::string_view> unit);
 
 /// Parses "at most 150 degC" or "at least 0.5 A". The words must be those of the threshold's direction, the number finite and in its range.
 ParsedLimit parse_limit(std::string_view text, const ThresholdType& type);

@@ -1,6 +1,7 @@
 #include "check/limit_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/quantity.h"
 
@@ -23,6 +24,11 @@ std::string words_of(const LimitProblem& problem, const ThresholdType& type) {
       return fmt::format("\"{0}\" is not a limit; expected \"{1} {0}\"", problem.text, to_string(type.direction));
     case LimitProblem::Kind::no_quantity:
       return fmt::format("{} (\"{}\")", problem.quantity_problem, type.example);
+    case LimitProblem::Kind::other_unit:
+      return problem.units.empty() ? fmt::format("'{}' is no unit of {}, which is a pure number; expected a limit such as \"{}\"",
+                                                 problem.unit, type.name, type.example)
+                                   : fmt::format("'{}' is no unit of {}; expected {}{}", problem.unit, type.name,
+                                                 problem.units.size() > 1 ? "one of " : "", fmt::join(problem.units, ", "));
     case LimitProblem::Kind::absolute_temperature:
       return fmt::format("\"{}\" is an absolute temperature, {:.0f} °C; expected \"{} {} degC\" if that is meant", problem.text,
                          problem.value, to_string(type.direction), problem.number);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/copper.h"
+#include "base/unit_names.h"
 #include "check/answer_number.h"
 #include "check/limit.h"
 #include "check/limit_words.h"
@@ -117,7 +118,12 @@ std::string parse_number_limit(std::string_view name, std::string_view text, Lim
   const std::string unit = unit_of_limit(text);
   const bool is_share = unit == "%";
   set_type(limit, std::string(name), is_share ? "" : unit, is_at_least ? Bound::at_least : Bound::at_most, is_share);
-  const ParsedLimit parsed = parse_limit(text, *limit.type);
+  ParsedLimit parsed = parse_limit(text, *limit.type);
+  if (parsed.problem && parsed.problem->kind == LimitProblem::Kind::other_unit) {
+    // No unit at all. The answer declares the number's unit, which is not known yet; its name mostly ends in it.
+    const std::optional<base::UnitOfName> declared = base::unit_of_name(name.substr(name.rfind('.') + 1));
+    parsed.problem->units = units_of_quantity(declared ? std::optional<std::string_view>(declared->unit) : std::nullopt);
+  }
   limit.value = parsed.value;
   limit.unit = parsed.unit;
   limit.text = text;

@@ -40,7 +40,13 @@ TEST(Limit, ThatIsNoneSaysWhatWasExpected) {
   EXPECT_THAT(problem("at most", "winding_peak_p95"), HasSubstr("does not begin with a number"));
   EXPECT_THAT(problem("at least 150 degC", "winding_peak_p95"), HasSubstr("the wrong side"));
   EXPECT_THAT(problem("at most 150", "winding_peak_p95"), HasSubstr("has no unit"));
-  EXPECT_THAT(problem("at most 150 A", "winding_peak_p95"), HasSubstr("no unit of this quantity"));
+  EXPECT_EQ(problem("at most 150 A", "winding_peak_p95"), "'A' is no unit of winding_peak_p95; expected degC");
+  EXPECT_EQ(problem("at most 1.5 bananas", "winding_peak_p95"), "'bananas' is no unit of winding_peak_p95; expected degC");
+  EXPECT_EQ(problem("at most 3 bananas", "time_above"), "'bananas' is no unit of time_above; expected one of s, h, min, ms, us");
+  EXPECT_EQ(problem("at most 3 s", "core_size"), "'s' is no unit of core_size; expected byte");
+  EXPECT_THAT(problem("at most 1 A", "rank"),
+              HasSubstr("'A' is no unit of rank, which is a pure number; expected a limit such as \"at most"));
+  EXPECT_THAT(problem("at most 400 K", "winding_peak_p95"), HasSubstr("an absolute temperature, 127 °C; expected \"at most 126.85 degC\""));
   EXPECT_THAT(problem("at most nan degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most inf degC", "winding_peak_p95"), HasSubstr("not a finite number"));
   EXPECT_THAT(problem("at most 1e999 degC", "winding_peak_p95"), HasSubstr("too large"));

@@ -261,7 +261,7 @@ TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
   const std::vector<Outcome> all = outcomes(
       "margin_A = \"at least 1 A\"\n"
       "\"planners.fast.distance_m\" = \"at least 5 s\"\n"
-      "\"planners.fast.peaks_C.p95\" = \"at most 70 K\"\n"
+      "\"planners.fast.peaks_C.p95\" = [\"at most 70 K\", \"at most 400 K\"]\n"
       "\"error.winding_C.rmse_K\" = \"at most 5 degC\"\n"
       "distance_m = \"at least 5 m\"\n"
       "\"planners.fast.peaks_C\" = \"at most 5 degC\"\n"
@@ -275,13 +275,28 @@ TEST_F(CommandChecks, LimitThatCannotBeEvaluatedFails) {
     return words_of(std::get<LimitInvalid>(all[i].reason.value()).problem, *all[i].limit.type);
   };
   EXPECT_TRUE(reason_of<NumberIsNull>(all[0]));
-  EXPECT_THAT(problem_of_limit(1), HasSubstr("'s' is no unit of this quantity"));
+  EXPECT_THAT(problem_of_limit(1), testing::StartsWith("'s' is no unit of planners.fast.distance_m; expected one of m"));
   EXPECT_THAT(problem_of_limit(2), HasSubstr("\"at most 70 K\" is an absolute temperature"));
-  EXPECT_THAT(problem_of_limit(3), HasSubstr("is a temperature, not a difference"));
-  EXPECT_TRUE(reason_of<NumberMissing>(all[4]));
-  EXPECT_TRUE(reason_of<NumberIsGroup>(all[5]));
-  EXPECT_TRUE(reason_of<UnitsDiffer>(all[6]));
-  EXPECT_TRUE(reason_of<NumberIsThreshold>(all[7]));
+  EXPECT_THAT(problem_of_limit(3), HasSubstr("\"at most 400 K\" is an absolute temperature, 127 °C; expected \"at most 126.85 degC\""));
+  EXPECT_THAT(problem_of_limit(4), HasSubstr("is a temperature, not a difference"));
+  EXPECT_TRUE(reason_of<NumberMissing>(all[5]));
+  EXPECT_TRUE(reason_of<NumberIsGroup>(all[6]));
+  EXPECT_TRUE(reason_of<UnitsDiffer>(all[7]));
+  EXPECT_TRUE(reason_of<NumberIsThreshold>(all[8]));
+}
+
+TEST(NumberLimit, InAnUnknownUnitNamesThoseOfTheNumber) {
+  const auto problem = [](std::string_view name, std::string_view text) {
+    Limit limit;
+    return parse_number_limit(name, text, limit);
+  };
+  EXPECT_EQ(problem("winding_C", "at most 1.5 bananas"), "'bananas' is no unit of winding_C; expected degC");
+  EXPECT_EQ(problem("fit.rmse_K", "at most 1.5 bananas"), "'bananas' is no unit of fit.rmse_K; expected K");
+  EXPECT_EQ(problem("time_to_limit_s", "at least 2 bananas"), "'bananas' is no unit of time_to_limit_s; expected one of s, h, min, ms, us");
+  EXPECT_THAT(problem("parameters.joint.value", "at most 2 bananas"),
+              testing::AllOf(HasSubstr("'bananas' is no unit of parameters.joint.value; expected one of A"), HasSubstr(", degC"),
+                             HasSubstr(", W")));
+  EXPECT_EQ(problem("parameters.joint.value", "at most 2 W/K"), "");
 }
 
 TEST_F(CommandChecks, ACountIsNotComparedWithAPercentage) {
@@ -315,7 +330,7 @@ TEST_F(CommandChecks, WrongLimitsAreReportedAtTheirPlace) {
   EXPECT_THAT(said, HasSubstr(":5:8: error: check[0].limits.over: is a number; expected a limit as text"));
   EXPECT_THAT(said, HasSubstr(":6:16: error: check[0].limits.heat_W.max: \"less than 5 W\" is not a limit"));
   EXPECT_THAT(said, HasSubstr("\"nan W\" is not a finite number"));
-  EXPECT_THAT(said, HasSubstr("'parsnips' is not a unit"));
+  EXPECT_THAT(said, HasSubstr("'parsnips' is no unit of planners.fast.distance_m; expected one of m, mm"));
   EXPECT_THAT(said, HasSubstr("error.winding_C.rmse_K: is a number"));
   EXPECT_THAT(said, HasSubstr("check[0].limits.runaway: is "));
   EXPECT_THAT(problem(""), HasSubstr("check[0].limits: is empty"));
