@@ -9,13 +9,17 @@
 
 #include "derate/committed_table.h"
 #include "motor/lint.h"
+#include "select/spread.h"
 
 namespace heatsoak::check {
+
+/// One-sided confidence of the bounds that thresholds compare: that of the worse end of a 95 % interval, in every threshold.
+inline constexpr double kBoundConfidence_share = select::kBoundConfidence_share;
 
 /// 95th percentile of a peak over the samples. The threshold compares its bound.
 struct PeakBasis {
   double p95_C = 0.0;
-  double bound_C = 0.0;  ///< upper confidence bound, 97.5 %, one-sided
+  double bound_C = 0.0;  ///< upper confidence bound
   double nominal_C = 0.0;
   double median_C = 0.0;
   int samples = 0;
@@ -26,7 +30,6 @@ struct PeakBasis {
 struct ShareBasis {
   long over = 0;
   int samples = 0;
-  double confidence_share = 0.0;
   std::optional<int> games;  ///< games, if the duty is drawn: samples of one game count as one draw
   double limit_share = 0.0;
   std::optional<long> samples_needed;  ///< samples with which this share could meet the limit; empty if no number suffices

@@ -16,13 +16,13 @@ std::string say(const std::monostate& /*of*/, const check::Outcome& /*outcome*/)
 
 std::string say(const check::PeakBasis& of, const check::Outcome& /*outcome*/) {
   return fmt::format(
-      "percentile {:.1f} °C, its bound with 97.5 % confidence {:.1f} °C; nominal {:.1f} °C, median {:.1f} °C, {} samples, {}", of.p95_C,
-      of.bound_C, of.nominal_C, of.median_C, of.samples, of.wheel);
+      "percentile {:.1f} °C, its bound with {:.3g} % confidence {:.1f} °C; nominal {:.1f} °C, median {:.1f} °C, {} samples, {}", of.p95_C,
+      100.0 * check::kBoundConfidence_share, of.bound_C, of.nominal_C, of.median_C, of.samples, of.wheel);
 }
 
 std::string say(const check::ShareBasis& of, const check::Outcome& outcome) {
-  std::string text = fmt::format("{} of {} samples over, bound of {:.0f} % confidence{}", of.over, of.samples, 100.0 * of.confidence_share,
-                                 of.games ? fmt::format(" by {} games", *of.games) : "");
+  std::string text = fmt::format("{} of {} samples over, bound of {:.3g} % confidence{}", of.over, of.samples,
+                                 100.0 * check::kBoundConfidence_share, of.games ? fmt::format(" by {} games", *of.games) : "");
   if (outcome.passed()) {
     return text;
   }
@@ -91,7 +91,8 @@ std::string compared_words(const check::NumberBasis& of, const check::ThresholdT
   const auto end = [&type](const std::optional<double>& value) { return value ? check::shown(*value, type) : "unknown"; };
   switch (of.compared) {
     case check::Compared::interval:
-      return fmt::format("{}, its 95 % interval {} to {}", check::shown(of.value, type), end(of.interval.low), end(of.interval.high));
+      return fmt::format("{}, its {:.3g} % interval {} to {}", check::shown(of.value, type), 100.0 * (1.0 - select::kError_share),
+                         end(of.interval.low), end(of.interval.high));
     case check::Compared::percentile:
       return "the percentile itself is compared: the answer has no interval for it";
     case check::Compared::probability:

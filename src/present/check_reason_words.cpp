@@ -152,9 +152,9 @@ std::string say(const check::NumberIsCount& of, const check::Limit& limit) {
 
 std::string say(const check::IntervalUnbounded& of, const check::Limit& limit) {
   return fmt::format(
-      "the 95 % interval of '{}' has no {} end, because the answer rests on too few samples; expected more of them (--samples of the "
+      "the {:.3g} % interval of '{}' has no {} end, because the answer rests on too few samples; expected more of them (--samples of the "
       "command)",
-      of.name, limit.type->direction == check::Bound::at_most ? "upper" : "lower");
+      100.0 * (1.0 - select::kError_share), of.name, limit.type->direction == check::Bound::at_most ? "upper" : "lower");
 }
 
 std::string say(const check::LimitInvalid& of, const check::Limit& limit) { return check::words_of(of.problem, *limit.type); }

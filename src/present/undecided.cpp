@@ -35,7 +35,8 @@ std::string deciding_words(const select::MotorEvaluation& motor) {
     return fmt::format("The share is close to the threshold: {} {}, the most that --samples takes ({}), will probably not decide",
                        number(most), unit, most);
   }
-  return fmt::format("With a probability of 50 % {} more {} decide (--samples {}), with 90 % {}", more(*half), unit, *half,
+  return fmt::format("With a probability of {:.0f} % {} more {} decide (--samples {}), with {:.0f} % {}",
+                     100.0 * select::kEvenDecision_share, more(*half), unit, *half, 100.0 * select::kLikelyDecision_share,
                      nine_in_ten ? fmt::format("{} more (--samples {})", more(*nine_in_ten), *nine_in_ten)
                                  : fmt::format("over {} (--samples takes {} at most)", number(most), most));
 }
@@ -67,7 +68,8 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
       motors.size(), unit_of(*motors.front()),
       are_few(*motors.front())
           ? deciding_words(*motors.front())
-          : fmt::format("Values of --samples that decide with a probability of 50 % to 90 %: {}", fmt::join(words, "; ")));
+          : fmt::format("Values of --samples that decide with a probability of {:.0f} % to {:.0f} %: {}",
+                        100.0 * select::kEvenDecision_share, 100.0 * select::kLikelyDecision_share, fmt::join(words, "; ")));
 }
 
 }  // namespace

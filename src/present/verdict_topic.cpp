@@ -36,7 +36,8 @@ std::string undecided_meaning() {
       "The interval of the share of samples over a limit contains the threshold of two verdicts ({rare:.0f} %, and {majority:.0f} % on a "
       "duty that is drawn). Without --samples the program doubles the samples of undecided motors up to {doublings} times: to {most}, or "
       "to {games} games on a duty that is drawn, where it stops earlier if a decision has become improbable (less than {least:.0f} %). The "
-      "answer then states with how many samples the verdict is decided with a probability of 50 % and of 90 %; to continue, give --samples one "
+      "answer then states with how many samples the verdict is decided with a probability of {even:.0f} % and of {likely:.0f} %; to "
+      "continue, give --samples one "
       "of these numbers. The interval allows for the repeated tests: the first may err with a probability of {first:.1f} %, each later one "
       "with {later:.2f} %, so a verdict is wrong with a probability of at most {wrong:.0f} % (Clopper and Pearson 1934; alpha spending, "
       "Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is decided, JSON states marginal, whatever the "
@@ -46,6 +47,7 @@ std::string undecided_meaning() {
       "about the tolerances.",
       fmt::arg("rare", 100.0 * select::kMarginalProbability), fmt::arg("majority", 100.0 * select::kMajority),
       fmt::arg("doublings", select::kMostDoublings), fmt::arg("most", most), fmt::arg("games", select::most_samples(true) / base::kLanes),
+      fmt::arg("even", 100.0 * select::kEvenDecision_share), fmt::arg("likely", 100.0 * select::kLikelyDecision_share),
       fmt::arg("least", 100.0 * select::kLeastDecision_share),
       fmt::arg("first", 100.0 * select::error_share(select::first_samples(false), false)),
       fmt::arg("later", 100.0 * select::error_share(most, false)), fmt::arg("wrong", 100.0 * select::kError_share));

@@ -115,7 +115,7 @@ Verdict worst_allowed_verdict(const MotorEvaluation& motor) {
 
 DecidingSamples deciding_samples(const MotorEvaluation& motor) {
   const Prospect prospect(motor);
-  return {prospect.deciding_samples(0.5), prospect.deciding_samples(0.9)};
+  return {prospect.deciding_samples(kEvenDecision_share), prospect.deciding_samples(kLikelyDecision_share)};
 }
 
 int most_samples(bool is_drawn) { return first_samples(is_drawn) << kMostDoublings; }

@@ -51,7 +51,10 @@ bool ranks_before(const MotorEvaluation& first, const MotorEvaluation& second);
 /// Returns the worst verdict that the samples still allow, for thresholds that must not pass by chance; stated_verdict() without samples.
 Verdict worst_allowed_verdict(const MotorEvaluation& motor);
 
-/// Numbers of samples with which the verdict is decided with a probability of 50 % and 90 %, counting the samples so far. Empty if not even
+/// Probabilities of a decision for which deciding_samples() gives the numbers of samples.
+inline constexpr double kEvenDecision_share = 0.5;
+inline constexpr double kLikelyDecision_share = 0.9;
+/// Numbers of samples with which the verdict is decided with these probabilities, counting the samples so far. Empty if not even
 /// most_samples_at_all() reach the probability.
 struct DecidingSamples {
   std::optional<int> half;

@@ -13,7 +13,7 @@ namespace heatsoak::select {
 
 namespace {
 
-constexpr double kTail_share = 0.025;
+constexpr double kTail_share = 0.5 * kError_share;
 constexpr double kPercentile_share = 0.95;
 constexpr std::size_t kFewestDraws = 20;
 constexpr double kNotKnown = std::numeric_limits<double>::infinity();

@@ -21,15 +21,18 @@ struct SharedDraws {
   std::size_t block_size = 1;
   std::uint64_t seed = 1;
 };
-/// Confidence intervals of the 95th percentile (level 95 %) and of the probability (level 1 − `error_share`). The upper end of the
+/// Probability that a 95 % interval does not contain the true value, half of it on each side.
+inline constexpr double kError_share = 0.05;
+/// One-sided confidence of each end of such an interval.
+inline constexpr double kBoundConfidence_share = 1.0 - 0.5 * kError_share;
+/// Confidence intervals of the 95th percentile (level 1 − kError_share) and of the probability (level 1 − `error_share`). The upper end of the
 /// percentile is infinite if there are fewer than fewest_samples_for_bound().
 struct DrawIntervals {
   Interval95 p95;
   Interval95 probability;
 };
-inline constexpr double kError_share = 0.05;
 /// Returns the smallest number of samples with an upper end of the 95th percentile's interval; if `is_drawn`, of samples in drawn games.
-/// Independent samples need so many that their largest one lies above the percentile with a probability of 97.5 %.
+/// Independent samples need so many that their largest one lies above the percentile with a probability of kBoundConfidence_share.
 int fewest_samples_for_bound(bool is_drawn);
 /// Returns the intervals for independent samples, at least one. Probability: Clopper and Pearson (1934). Percentile: two order statistics,
 /// whose ranks the binomial distribution gives.

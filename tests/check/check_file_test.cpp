@@ -217,11 +217,11 @@ TEST_F(CheckFiles, FewSamplesCannotKeepATightProbability) {
   const Outcome few = with(32, "at most 5 %");
   EXPECT_FALSE(few.passed());
   EXPECT_TRUE(few.measured);
-  EXPECT_NEAR(few.measured->value, 1.0 - std::pow(0.05, 1.0 / 32.0), 1e-9);
-  EXPECT_EQ(basis_of<ShareBasis>(few).samples_needed, 59);
+  EXPECT_NEAR(few.measured->value, 1.0 - std::pow(0.025, 1.0 / 32.0), 1e-9);
+  EXPECT_EQ(basis_of<ShareBasis>(few).samples_needed, 72);
   EXPECT_FALSE(basis_of<ShareBasis>(few).games);
-  EXPECT_TRUE(with(64, "at most 5 %").passed());
-  EXPECT_FALSE(with(64, "at most 4 %").passed());
+  EXPECT_TRUE(with(72, "at most 5 %").passed());
+  EXPECT_FALSE(with(64, "at most 5 %").passed());
 }
 
 // All samples of one game share its load, so the number of games counts.
@@ -234,10 +234,10 @@ TEST_F(CheckFiles, ProbabilityOnAMatchCountsGames) {
         .front();
   };
   const Outcome found = with("at most 5 %");
-  EXPECT_NEAR(found.measured->value, 1.0 - std::sqrt(0.05), 1e-9);
+  EXPECT_NEAR(found.measured->value, 1.0 - std::sqrt(0.025), 1e-9);
   EXPECT_EQ(basis_of<ShareBasis>(found).games, 2);
-  EXPECT_EQ(basis_of<ShareBasis>(found).samples_needed, 472);
-  EXPECT_EQ(basis_of<ShareBasis>(with("at most 0.1 %")).samples_needed, 23960);
+  EXPECT_EQ(basis_of<ShareBasis>(found).samples_needed, 576);
+  EXPECT_EQ(basis_of<ShareBasis>(with("at most 0.1 %")).samples_needed, 29504);
 }
 
 // The guard assumes the hottest air that it is designed for, whatever air temperature the match has.

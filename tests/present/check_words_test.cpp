@@ -62,14 +62,14 @@ TEST(CheckWords, state_why_update_leaves_a_limit) {
 }
 
 TEST(CheckWords, advise_more_samples_only_where_the_limit_is_broken) {
-  check::ShareBasis basis{.over = 0, .samples = 32, .confidence_share = 0.95, .games = {}, .limit_share = 0.05, .samples_needed = 59};
+  check::ShareBasis basis{.over = 0, .samples = 32, .games = {}, .limit_share = 0.05, .samples_needed = 72};
   EXPECT_EQ(basis_words(outcome(kShareLimit, 0.0894, basis)),
-            "0 of 32 samples over, bound of 95 % confidence; 59 samples or more could meet 5 % with this share");
-  EXPECT_EQ(basis_words(outcome(kShareLimit, 0.04, basis)), "0 of 32 samples over, bound of 95 % confidence");
+            "0 of 32 samples over, bound of 97.5 % confidence; 72 samples or more could meet 5 % with this share");
+  EXPECT_EQ(basis_words(outcome(kShareLimit, 0.04, basis)), "0 of 32 samples over, bound of 97.5 % confidence");
   basis.games = 4;
   basis.samples_needed.reset();
   EXPECT_EQ(explanation_words(outcome(kShareLimit, 0.5, basis)),
-            "50 % is above the limit of 5 %: 0 of 32 samples over, bound of 95 % confidence by 4 games; no number of samples can meet the "
+            "50 % is above the limit of 5 %: 0 of 32 samples over, bound of 97.5 % confidence by 4 games; no number of samples can meet the "
             "limit with this share");
 }
 

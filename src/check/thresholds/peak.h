@@ -20,9 +20,10 @@ inline constexpr base::Range kPlausible_C = base::Range::between(-60.0, 1000.0);
 inline std::string peak_p95_meaning(std::string_view part) {
   return fmt::format(
       "95th percentile over the samples of the {}'s highest temperature, of the wheel whose winding gets hottest: the upper confidence "
-      "bound (97.5 %, one-sided) by order statistics, from at least {} samples. On a duty that is drawn at random: the bound by bootstrap "
+      "bound ({:.3g} %, one-sided) by order statistics, from at least {} samples. On a duty that is drawn at random: the bound by "
+      "bootstrap "
       "over the draws, from at least {} samples",
-      part, select::fewest_samples_for_bound(false), select::fewest_samples_for_bound(true));
+      part, 100.0 * kBoundConfidence_share, select::fewest_samples_for_bound(false), select::fewest_samples_for_bound(true));
 }
 
 /// Returns the motor's own limit as the loosest one; nothing without a motor or if its file gives no such limit.
