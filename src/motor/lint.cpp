@@ -58,7 +58,7 @@ namespace {
 struct NamedCheck {
   std::string_view name;
   void (*run)(const Motor&, lint_checks::Findings&);
-  bool is_of_values = true;  ///< false: checks how the file is written, not its values
+  bool is_of_values = true;  ///< checks values of the data sheet, from which a fit may differ
 };
 
 constexpr std::array kChecks = {
@@ -82,6 +82,7 @@ constexpr std::array kChecks = {
     NamedCheck{"density", lint_checks::density},
     NamedCheck{"rotor_inertia", lint_checks::rotor_inertia},
     NamedCheck{"limits", lint_checks::limits},
+    NamedCheck{"effect_sizes", lint_checks::effect_sizes, false},
     NamedCheck{"sources", lint_checks::sources, false},
     NamedCheck{"confirmations", lint_checks::confirmations, false},
     NamedCheck{kEstimatesCheck, lint_checks::estimates, false},

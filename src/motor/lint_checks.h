@@ -92,6 +92,7 @@ void electrical_time_constant(const Motor& motor, Findings& findings);
 void density(const Motor& motor, Findings& findings);
 void rotor_inertia(const Motor& motor, Findings& findings);
 void limits(const Motor& motor, Findings& findings);
+void effect_sizes(const Motor& motor, Findings& findings);
 
 // Sources, spreads and origins of the values: lint_provenance.cpp
 void sources(const Motor& motor, Findings& findings);

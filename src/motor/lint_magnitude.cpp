@@ -1,6 +1,9 @@
 // Checks of orders of magnitude: values that no real motor has.
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/quantity.h"
 #include "motor/lint_checks.h"
@@ -43,6 +46,12 @@ constexpr Bounds kUsualThermalResistance_ratio{0.05, 20.0};
 /// Stator over winding: motor_db has 7 to 14. Copper is at least 3 % of the mass, which gives 40; a mounting plate may come on top.
 constexpr double kUsualHeatCapacity_ratio = 100.0;
 constexpr double kHeatCapacity_ratio = 1000.0;
+/// Size of an effect over the motor's own value of that kind. Usual: src/thermal/effects describes sizes of 0.02 to 0.3 W/K, up to 3 W, 5
+/// to 20 mohm and 30 to 500 J/K for motors of 0.1 kg. Possible: a wrong prefix is a factor of 1000. A body may weigh as much as the robot.
+constexpr double kUsualEffect_ratio = 5.0;
+constexpr double kEffect_ratio = 100.0;
+constexpr Bounds kUsualBody_ratio{1e-3, 100.0};
+constexpr Bounds kBody_ratio{1e-5, 10000.0};
 /// A motor shorter than this share of its diameter counts as flat; nearly all flat motors have an external rotor.
 constexpr double kFlat = 0.7;
 
@@ -106,7 +115,61 @@ void thermal_ratios(const MotorValues& v, Findings& findings) {
           LintClause{LintWords::heat_capacity_ratio, {shown(stator_J_per_K, "J/K"), shown(winding_J_per_K, "J/K")}});
 }
 
+/// A value of the motor itself with which the size of an effect is compared.
+struct OwnValue {
+  double value = base::kUnknown;
+  LintWords words = LintWords::own_conductance;
+  Bounds usual{0.0, kUsualEffect_ratio};
+  Bounds possible{0.0, kEffect_ratio};
+};
+
+/// Returns the motor's own value in the unit of a parameter; unknown for units without one.
+OwnValue own_value(const MotorValues& v, std::string_view unit) {
+  if (unit == "W/K") {
+    return {.value = 1.0 / v.thermal_resistance_winding_stator_K_per_W + 1.0 / v.thermal_resistance_stator_ambient_K_per_W};
+  }
+  if (unit == "W") {
+    return {.value = (v.winding_limit_C - kSheetAmbient_C) / v.thermal_resistance_stator_ambient_K_per_W,
+            .words = LintWords::room_of_stator};
+  }
+  if (unit == "ohm") {
+    return {.value = v.terminal_resistance_ohm, .words = LintWords::own_resistance};
+  }
+  if (unit == "J/K") {
+    return {.value = v.thermal_time_constant_winding_s / v.thermal_resistance_winding_stator_K_per_W +
+                     v.thermal_time_constant_stator_s / v.thermal_resistance_stator_ambient_K_per_W,
+            .words = LintWords::own_heat_capacity,
+            .usual = kUsualBody_ratio,
+            .possible = kBody_ratio};
+  }
+  return {};
+}
+
 }  // namespace
+
+/// The declared range of a conductance, loss or heat capacity has no upper end, because it depends on the size of the motor.
+void effect_sizes(const Motor& motor, Findings& findings) {
+  for (const MotorEffect& effect : motor.effects) {
+    const std::vector<double> values = effect.values();
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const base::ParameterSpec& spec = effect.type->parameters[i];
+      const std::string_view unit = base::unit_of(effect.type->parameters, i, values);
+      const OwnValue own = own_value(motor.nominal, unit);
+      const double ratio = std::abs(effect.parameters[i].value) / own.value;
+      if (!spec.choices.empty() || !own.usual.excludes(ratio)) {
+        continue;
+      }
+      LintClause what{LintWords::effect_size,
+                      {effect.name, spec.key, shown(effect.parameters[i].value, unit), LintNumber{ratio, 3},
+                       LintClause{own.words, {shown(own.value, unit)}}, LintNumber{own.usual.low, 1}, LintNumber{own.usual.high, 3}}};
+      if (own.possible.excludes(ratio)) {
+        findings.error_at(effect.parameters[i].at, std::move(what));
+      } else {
+        findings.warning_at(effect.parameters[i].at, std::move(what));
+      }
+    }
+  }
+}
 
 void required_values(const Motor& motor, Findings& findings) {
   if (!is_complete(motor)) {

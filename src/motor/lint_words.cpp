@@ -125,6 +125,12 @@ constexpr std::array kSentences = std::to_array<Sentence>({
     {LintWords::input_power_counted_twice,
      "effects.{} is an input_power_loss, which contains the copper loss and the no-load loss of the file's own parameters, so their heat "
      "counts twice wherever the current is known; expected it only in a file for logs without a current"},
+    {LintWords::effect_size,
+     "effects.{}.{} of {} is {} times {}, expected {} to {} times; check its unit, or the logs and the effect if it was fitted"},
+    {LintWords::own_conductance, "the {} of the motor's own conductances together"},
+    {LintWords::room_of_stator, "the {} that bring the stator from 25 degC to the winding limit"},
+    {LintWords::own_resistance, "the motor's own resistance of {}"},
+    {LintWords::own_heat_capacity, "the {} of winding and stator together"},
     {LintWords::contact_radius_large, "of {} is large for wheels with a radius of {}; expected at most {}. Is {} the diameter?"},
     {LintWords::wheels_too_large, "wheels with a radius of {} {} on a circle of {}; expected at most {}. Is {} the diameter?"},
     {LintWords::nominal_above_full, "{:.4g} V is more than the full battery's {:.4g} V; expected a value between empty and full"},
