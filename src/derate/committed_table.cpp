@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "base/quantity.h"
+#include "derate/c_header/c_text.h"
 #include "derate/exporter.h"
 #include "derate/integer_form/quantised_table.h"
 #include "input/csv.h"
@@ -119,8 +120,11 @@ std::map<std::string, std::string> by_name(const std::string& flags) {
 
 /// Reads the table of c_header_q15: four arrays, and the sizes and constants of its structure.
 void read_integer_header(const std::string& text, CommittedTable& committed) {
-  static const std::regex kTable(R"(static const heatsoak_integer_table (\w+)_table = \{\s*\{\w+,\s*(\d+)\},\s*\{\w+,\s*(\d+)\},\s*)"
-                                 R"(\{\w+,\s*(\d+)\},\s*\w+,\s*(\d+)u,\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+),\s*(\d+)\};)");
+  // "~": white space and comments between two members.
+  static const std::regex kTable(c_header::replaced(
+      R"(static const heatsoak_integer_table (\w+)_table = \{~\{\w+,\s*(\d+)\},~\{\w+,\s*(\d+)\},~\{\w+,\s*(\d+)\},~\w+,~)"
+      R"((\d+)u,~(\d+),~(\d+),~(\d+),~(\d+),~(\d+),~(\d+),~(\d+)~\};)",
+      {{"~", R"((?:\s|/\*[^*]*\*/)*)"}}));
   std::smatch found;
   const std::vector<HeaderArray> arrays = header_arrays(text);
   integer_form::QuantisedTable table;

@@ -1,6 +1,7 @@
 #include "derate/export_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/crc.hpp>
@@ -47,11 +48,15 @@ std::set<std::string> types_that_use(const Observer& observer, std::size_t signa
       continue;
     }
     const bool is_input = step.operation == thermal::Operation::input;
-    depends[i] =
-        is_input ? static_cast<std::size_t>(step.left) == signal
-                 : depends[static_cast<std::size_t>(step.left)] != 0 || (step.right && depends[static_cast<std::size_t>(*step.right)] != 0);
+    const std::string_view law = formula.law_of(static_cast<int>(i));
+    // The sum of all heat is no part of the law that adds to it: it depends on the signals of the laws before.
+    const auto brings = [&](int operand) {
+      const std::string_view from = formula.law_of(operand);
+      return depends[static_cast<std::size_t>(operand)] != 0 && (from.empty() || from == law);
+    };
+    depends[i] = is_input ? static_cast<std::size_t>(step.left) == signal : brings(step.left) || (step.right && brings(*step.right));
     if (!is_input && needed[i] != 0 && depends[i] != 0) {
-      types.emplace(formula.law_of(static_cast<int>(i)));
+      types.emplace(law);
     }
   }
   return types;
@@ -123,6 +128,41 @@ std::string provenance_lines(const Derating& derating, std::string_view comment)
   for (const motor::DefaultSpread& each : derating.default_spreads) {
     text += fmt::format("{} No tolerance in the motor's file, default by origin: {}\n", comment,
                         in_one_line(motor::to_string(std::span<const motor::DefaultSpread>(&each, 1))));
+  }
+  return text;
+}
+
+std::string law_lines(const Derating& derating, std::string_view comment) {
+  std::vector<std::string> lines{"Laws of the model:"};
+  for (const ActingEffect& effect : derating.effects) {
+    lines.push_back(fmt::format(
+        "  {}{}: {}{}", effect.name, effect.name == effect.type ? "" : fmt::format(" ({})", effect.type), effect.equation,
+        effect.column.empty() ? "" : fmt::format("; depends on {} of the logs, evaluated at its hottest value", effect.column)));
+    std::vector<std::string> values;
+    for (const EffectParameter& each : effect.parameters) {
+      const std::string number = fmt::format("{:.6g}{}{}", each.value, each.unit.empty() ? "" : " ", each.unit);
+      values.push_back(fmt::format("{} {}", each.key, each.choice.empty() ? number : each.choice));
+    }
+    lines.push_back(fmt::format("    {}", fmt::join(values, ", ")));
+  }
+  std::vector<std::string> capacities;
+  const thermal::Formula& formula = derating.observer.formula();
+  for (std::size_t node = 0; node < derating.observer.state_count(); ++node) {
+    const thermal::Formula::Step& rate = formula.steps()[static_cast<std::size_t>(derating.observer.rate_steps()[node])];
+    const double per_capacity = rate.right ? formula.steps()[static_cast<std::size_t>(*rate.right)].value : 0.0;
+    if (per_capacity > 0.0) {
+      capacities.push_back(fmt::format("{} {:.6g} J/K", derating.observer.state_names()[node], 1.0 / per_capacity));
+    }
+  }
+  lines.push_back(fmt::format("  heat capacities, P = C · dT/dt: {}", fmt::join(capacities, ", ")));
+  std::string text;
+  for (std::string& line : lines) {
+    // Names and columns come from the user's files.
+    line = in_one_line(line);
+    for (std::size_t at = line.find("*/"); at != std::string::npos; at = line.find("*/")) {
+      line.replace(at, 2, "* /");
+    }
+    text += fmt::format("{} {}\n", comment, line);
   }
   return text;
 }

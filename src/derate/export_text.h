@@ -34,6 +34,9 @@ std::string confidence_text(const Derating& derating, const Guarantee& checked);
 /// Returns a line for each reason why values of the motor's file may be wrong: the guarantee holds for the motor that the file describes.
 std::vector<std::string> value_warnings(const Derating& derating);
 
+/// Returns the laws of the model with the values of their parameters, and the heat capacities, as lines that begin with `comment`.
+std::string law_lines(const Derating& derating, std::string_view comment);
+
 /// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
 /// the id is empty or begins with a digit.
 std::string identifier(std::string_view id);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,11 @@
 
 namespace heatsoak::derate {
 
+enum class Notation {
+  c,    ///< "  const float copper_loss_W = a * b;"; temperatures are state_C[node], results "  rate_K_per_s[node] = …;"
+  lisp  ///< "  (var copper-loss-W (* a b))"; temperatures are winding-C, results "  (var winding-rate-K-per-s …)"
+};
+
 /// Syntax of the target language.
 struct LineStyle {
   std::string (*literal)(double value) = nullptr;            ///< in the precision of `number`; in parentheses if negative
@@ -20,11 +26,16 @@ struct LineStyle {
   std::string_view number = "float";                         ///< type of the steps
   std::string_view exponential = "heatsoak_exp";             ///< function of one number
   std::string_view power = "heatsoak_pow";                   ///< function of a base and an exponent; 0 if the base is not positive
+  Notation notation = Notation::c;
+  std::string_view prefix = {};         ///< before every name in Lisp
+  std::set<std::string> reserved = {};  ///< names that the generated code uses for something else, in the notation of C
 };
 
-/// One line per quantity with a name of its own, "  const float copper_loss_W = …;", then one per node, "  rate_K_per_s[node] = …;".
-/// Other steps of the formula stand where they are used. Temperatures are state_C[node]. In single precision without contraction (FMA)
-/// the results are bit-identical to FormulaRun<float>.
+/// Returns a name in Lisp: "hs-copper-loss-W" for the prefix "hs-" and "copper_loss_W".
+std::string lisp_name(std::string_view prefix, std::string name);
+
+/// One line per quantity with a name of its own, then one per node. Other steps of the formula stand where they are used. In single
+/// precision without contraction (FMA) the results are bit-identical to FormulaRun<float>.
 class RateLines {
  public:
   /// `rate_steps`: one of the observer's sets, one step per state.
@@ -45,6 +56,9 @@ class RateLines {
 
   [[nodiscard]] bool is_variable(int place) const;
   Text expression(const thermal::Formula::Step& step);
+  Text infix(const thermal::Formula::Step& step);
+  [[nodiscard]] std::string input(std::size_t place) const;
+  [[nodiscard]] std::string variable(const std::string& name) const;
   [[nodiscard]] std::string operand(int place) const;
 
   const Observer& observer_;

@@ -68,8 +68,8 @@ TEST_F(ConsumersScript, FailsIfATestIsSkippedFailsOrDoesNotExist) {
   const auto exit_code = [&](const std::string& printed, int result, const char* name) {
     write("tests", fmt::format("#!/bin/sh\ncat <<'END'\n{}\nEND\nexit {}\n", printed, result));
     fs::permissions(folder / "tests", fs::perms::owner_all);
-    return WEXITSTATUS(run(fmt::format("HEATSOAK_CONSUMERS=fetched HEATSOAK_LISPBM_REPL=given HEATSOAK_TEST_DERATE=./tests '{}' {} > out.txt 2>&1",
-                                          script, name)));
+    return WEXITSTATUS(run(fmt::format(
+        "HEATSOAK_CONSUMERS=fetched HEATSOAK_LISPBM_REPL=given HEATSOAK_TEST_DERATE=./tests '{}' {} > out.txt 2>&1", script, name)));
   };
   EXPECT_EQ(exit_code("[       OK ] One.test (1 ms)", 0, "lispbm"), 0) << text_of(folder / "out.txt");
   EXPECT_EQ(exit_code("[       OK ] One.test (1 ms)\n[  SKIPPED ] Other.test (0 ms)", 0, "lispbm"), 1);
@@ -123,7 +123,8 @@ TEST_F(MoteusConsumer, FirmwareHasEveryKey) {
       ASSERT_EQ(types.size(), 1U) << key << " in " << within;
       within = *types.begin();
     }
-    EXPECT_TRUE(within == "float" || within == "bool" || within.ends_with("int8_t")) << key << " is a " << within << ", the file has " << value;
+    EXPECT_TRUE(within == "float" || within == "bool" || within.ends_with("int8_t"))
+        << key << " is a " << within << ", the file has " << value;
   }
 }
 

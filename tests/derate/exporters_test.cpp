@@ -160,6 +160,8 @@ TEST(Exporters, RefuseByNameWhatTheyCannotExpress) {
   for (const char* name : {"vesc", "simplefoc"}) {
     EXPECT_THAT(refusal(name, wind), HasSubstr("wind (vehicle_airflow)")) << name;
     EXPECT_THAT(refusal(name, wind), HasSubstr("vehicle_speed_m_per_s")) << name;
+    const Derating both = derating_of(ecx_32_with(std::string(kAirflow) + kChassis));
+    EXPECT_THAT(refusal(name, both), testing::AllOf(HasSubstr("wind (vehicle_airflow)"), testing::Not(HasSubstr("chassis")))) << name;
   }
   const Derating soaked = derating_of(ecx_32_with(std::string(kChassis) + "node = \"winding\"\n"));
   for (const char* name : {"moteus", "odrive"}) {

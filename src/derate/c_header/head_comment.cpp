@@ -37,17 +37,6 @@ std::string default_spreads_text(const Derating& derating) {
   return text;
 }
 
-std::string laws_text(const Derating& derating) {
-  std::string text = " *\n * Laws of the model:\n";
-  for (const ActingEffect& effect : derating.effects) {
-    text += fmt::format(
-        " *   {}{}: {}{}\n", in_comment(effect.name), effect.name == effect.type ? "" : fmt::format(" ({})", effect.type),
-        in_comment(effect.equation),
-        effect.column.empty() ? "" : fmt::format("; depends on {} of the logs, evaluated at its hottest value", in_comment(effect.column)));
-  }
-  return text;
-}
-
 std::string guarantee_text(const Derating& derating) {
   const Guarantee& checked = derating.guarantee;
   return fmt::format(
@@ -87,7 +76,7 @@ std::string head_comment(const Source& source) {
              in_comment(derating.motor_id), in_comment(derating.robot_id), base::program_version(),
              derating.provenance.input_hash.empty() ? "" : fmt::format(" * Inputs {} {}.\n", kInputHash, derating.provenance.input_hash),
              default_spreads_text(derating)) +
-         guarantee_text(derating) + conditions_text(derating) + laws_text(derating) +
+         guarantee_text(derating) + conditions_text(derating) + " *\n" + law_lines(derating, " *") +
          fmt::format(
              " *\n"
              " * Once, after a long rest: {0}_start(&motor, board_C);\n"

@@ -424,6 +424,9 @@ std::string hottest_body(std::size_t nodes) {
   if (nodes == 2) {
     return fmt::format("{}  return state_C[1];\n}}\n\n", kHead);
   }
+  if (nodes == 3) {
+    return fmt::format("{}  return state_C[2] > state_C[1] ? state_C[2] : state_C[1];\n}}\n\n", kHead);
+  }
   return fmt::format(
       "{}  int node;\n  float hottest_C = state_C[1];\n  for (node = 2; node < {}; ++node) {{\n    hottest_C = state_C[node] > hottest_C ? "
       "state_C[node] : hottest_C;\n  }}\n  return hottest_C;\n}}\n\n",

@@ -123,6 +123,9 @@ constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node)
   }
 )";
 
+/// The same for the only node beyond winding and stator.
+constexpr std::string_view kThirdBody = "  hottest_body_C = state->state_C[2] > hottest_body_C ? state->state_C[2] : hottest_body_C;\n";
+
 /// Returns the signals with several candidate values; a signal with a single one needs no sweep.
 std::vector<observed::Signal> swept_signals(const Source& source) {
   std::vector<observed::Signal> swept = source.signals;
@@ -173,7 +176,9 @@ std::string sweeps(const Source& source, const std::vector<observed::Signal>& sw
 }  // namespace
 
 std::string plausible_constants(const Source& source) {
-  std::string text = "/* A reading outside of its plausible range is replaced by the UNKNOWN value: the hottest that motor, driver and battery permit. */\n";
+  std::string text =
+      "/* A reading outside of its plausible range is replaced by the UNKNOWN value: the hottest that motor, driver and battery permit. "
+      "*/\n";
   for (const observed::Signal signal : source.signals) {
     const PlausibleRange range = plausible_range(source.derating, signal);
     if (least_of(source, signal) == constant_of(source, "LEAST_PLAUSIBLE", signal)) {
@@ -199,7 +204,9 @@ std::string step_functions(const Source& source) {
   const std::size_t nodes = source.derating.observer.state_count();
   const Words words{{"@UNKNOWN@", plausible_ranges(source)},
                     {"@SWEEPS@", sweeps(source, swept)},
-                    {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
+                    {"@BODIES@", std::string(nodes == 3  ? kThirdBody
+                                             : nodes > 3 ? kBodies
+                                                         : "")},
                     {"@PASS@", swept.size() > 1 ? "  int pass;\n" : ""},
                     {"@SPEED_BIT@", std::to_string(bit(observed::speed))},
                     {"@CAP@", source.capital},

@@ -31,11 +31,14 @@ struct InputField {
   observed::Signal signal;
   std::string_view name;
   std::string_view meaning;
+  std::string_view flag;  ///< variable that is true if the reading was replaced
 };
 constexpr InputField kInputs[] = {
-    {observed::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed when the motor drives"},
-    {observed::speed, "speed_mrad_per_s", "speed of the motor's shaft, signed"},
-    {observed::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared air if it is not measured"}};
+    {observed::current, "current_mA", "equivalent DC current, rms over the period, with the sign of the speed when the motor drives",
+     "is_current_unknown"},
+    {observed::speed, "speed_mrad_per_s", "speed of the motor's shaft, signed", "is_speed_unknown"},
+    {observed::ambient, "ambient_mC", "air around the motor in 0.001 degC; the hottest declared air if it is not measured",
+     "is_ambient_unknown"}};
 
 std::int64_t thousandths_outward(double value) {
   return static_cast<std::int64_t>(value < 0.0 ? std::floor(1000.0 * value) : std::ceil(1000.0 * value));
@@ -99,7 +102,7 @@ double temperature_excess_K(const Derating& derating, const IntegerLines& lines)
   return most_K;
 }
 
-constexpr std::string_view kHelpers = R"(/* a * b / divisor, a power of two */
+constexpr std::string_view kHelpers = R"(/* a * b / divisor, a power of two that selects the unit of the result's last bit */
 static inline int32_t @_product(int32_t a, int32_t b, int64_t divisor) {
   const int64_t whole = (int64_t)a * b;
   return (int32_t)(whole / divisor);
@@ -115,7 +118,7 @@ static inline int32_t @_quotient(int32_t a, int32_t b, int64_t factor) {
 
 )";
 
-constexpr std::string_view kStep = R"(static inline bool @_is_temperature(int64_t stored) {
+constexpr std::string_view kStart = R"(static inline bool @_is_temperature(int64_t stored) {
   return (stored >= (((int64_t)@CAP@_COLDEST_AMBIENT_MC - 1000) * @CAP@_STORED_PER_K / 1000)) && (stored <= (@MOST_STATE@ * @CAP@_STORED_PER_K));
 }
 
@@ -129,7 +132,10 @@ static inline void @_start(@_state *state, int32_t body_mC) {
   state->started = @CAP@_STARTED;
 }
 
-/* Each node takes its largest temperature rise over the possible values; the input takes the value that heats the winding most. */
+)";
+
+constexpr std::string_view kSweep =
+    R"(/* Each node takes its largest temperature rise over the possible values; the input takes the value that heats the winding most. */
 static inline void @_sweep(const @_input *input, int32_t *which, const int32_t *possible, int32_t count, const int32_t *state_C, int64_t *most) {
   int64_t change[@NODES@];
   int64_t hottest_change = 0;
@@ -150,7 +156,9 @@ static inline void @_sweep(const @_input *input, int32_t *which, const int32_t *
   *which = hottest;
 }
 
-static inline @_output @_step(@_state *state, const @_input *measured) {
+)";
+
+constexpr std::string_view kStep = R"(static inline @_output @_step(@_state *state, const @_input *measured) {
   const int64_t coldest = (int64_t)@CAP@_COLDEST_AMBIENT_MC * @CAP@_STORED_PER_K / 1000;
   const int64_t hottest = @MOST_STATE@ * @CAP@_STORED_PER_K;
   @_output out;
@@ -159,8 +167,7 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
   int32_t state_C[@NODES@];
   int32_t hottest_body_mC;
   int32_t node;
-  int32_t pass;
-  bool is_started = state->started == @CAP@_STARTED;
+@PASS@  bool is_started = state->started == @CAP@_STARTED;
   bool is_current_unknown = false;
   bool is_speed_unknown = false;
   bool is_ambient_unknown = false;
@@ -170,25 +177,17 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
   if (!is_started) {
     @_start(state, @CAP@_WINDING_LIMIT_MC);
   }
-@BELIEFS@  for (node = 0; node < @NODES@; ++node) {
-    state_C[node] = (int32_t)(state->stored[node] / @PER_STATE@);
+@PLAUSIBLE@  for (node = 0; node < @NODES@; ++node) {
+    state_C[node] = (int32_t)(state->stored[node] / @CAP@_STORED_PER_STATE);
   }
   @_changes(&in, state_C, change);
-  for (pass = 0; (pass < 2) && (is_current_unknown || is_speed_unknown); ++pass) {
-    if (is_current_unknown) {
-      @_sweep(&in, &in.current_mA, @_possible_current_mA, @CURRENTS@, state_C, change);
-    }
-    if (is_speed_unknown) {
-      @_sweep(&in, &in.speed_mrad_per_s, @_possible_speed_mrad_per_s, @SPEEDS@, state_C, change);
-    }
-  }
-  for (node = 0; node < @NODES@; ++node) {
+@SWEEPS@  for (node = 0; node < @NODES@; ++node) {
     const int64_t next = state->stored[node] + change[node];
     state->stored[node] = (next > coldest) ? next : coldest;
     state->stored[node] = (state->stored[node] < hottest) ? state->stored[node] : hottest;
   }
-  out.guarded_winding_mC = (int32_t)((state->stored[0] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
-  hottest_body_mC = (int32_t)((state->stored[1] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
+  out.guarded_winding_mC = (int32_t)((state->stored[0] * 1000) / @CAP@_STORED_PER_K) + @CAP@_READ_HOTTER_MC;
+  hottest_body_mC = (int32_t)((state->stored[1] * 1000) / @CAP@_STORED_PER_K) + @CAP@_READ_HOTTER_MC;
 @BODIES@  out.allowed_current_mA =
       is_speed_unknown ? 0
                        : heatsoak_integer_allowed_mA(&@_table, (in.speed_mrad_per_s < 0) ? -in.speed_mrad_per_s : in.speed_mrad_per_s,
@@ -208,9 +207,14 @@ static inline @_output @_step(@_state *state, const @_input *measured) {
 )";
 
 constexpr std::string_view kBodies = R"(  for (node = 2; node < @NODES@; ++node) {
-    const int32_t body_mC = (int32_t)((state->stored[node] * 1000) / @CAP@_STORED_PER_K) + @READ_HOTTER@;
+    const int32_t body_mC = (int32_t)((state->stored[node] * 1000) / @CAP@_STORED_PER_K) + @CAP@_READ_HOTTER_MC;
     hottest_body_mC = (body_mC > hottest_body_mC) ? body_mC : hottest_body_mC;
   }
+)";
+
+/// The same for the only node beyond winding and stator.
+constexpr std::string_view kThirdBody = R"(  node = (state->stored[2] > state->stored[1]) ? 2 : 1;
+  hottest_body_mC = (int32_t)((state->stored[node] * 1000) / @CAP@_STORED_PER_K) + @CAP@_READ_HOTTER_MC;
 )";
 
 /// Formats text as comment lines; "*/" in a user's text cannot end the comment.
@@ -224,6 +228,7 @@ std::string comment_lines(std::string text) {
 std::string head(const Derating& derating, const std::string& prefix, const IntegerLines& lines, const QuantisedTable& table) {
   const double table_ratio = integer_form::quantised_shortfall_ratio(derating.table, table);
   std::string text = "/*\n" + comment_lines(provenance_lines(derating, " *"));
+  text += " *\n" + law_lines(derating, " *");
   text += fmt::format(
       " *\n"
       " * Thermal observer and derating table in integers. For nominal temperatures and other signals use c_header.\n"
@@ -280,14 +285,20 @@ std::string structures(const Derating& derating, const std::string& prefix) {
 std::string table_text(const QuantisedTable& table, const std::string& prefix) {
   return integers("int32_t", prefix + "_speed_mrad_per_s", widened(table.speed_mrad_per_s)) +
          integers("int32_t", prefix + "_stator_mC", widened(table.stator_mC)) +
-         integers("int32_t", prefix + "_winding_mC", widened(table.winding_mC)) + "/* by speed, then stator, then winding */\n" +
+         integers("int32_t", prefix + "_winding_mC", widened(table.winding_mC)) +
+         fmt::format("/* I^2 * R / R25 in units of {} mA^2: by speed, then stator, then winding */\n", table.unit_mA2) +
          integers("int16_t", prefix + "_heat_per_ohm", widened(table.heat)) +
          fmt::format(
              "static const heatsoak_integer_table {0}_table = {{\n    {{{0}_speed_mrad_per_s, {1}}},\n    {{{0}_stator_mC, {2}}},\n"
-             "    {{{0}_winding_mC, {3}}},\n    {0}_heat_per_ohm,\n    {4}u, {5}, {6}, {7}, {8}, {9}, {10}, {11}}};\n\n",
+             "    {{{0}_winding_mC, {3}}},\n    {0}_heat_per_ohm,\n    {4}u, /* unit_mA2 */\n    {5}, /* resistance_at_first, {12:.6g} */\n"
+             "    {6}, /* resistance_per_mK, {13:.6g} per K */\n    {7}, /* most_current_mA */\n    {8}, /* straight_below_mA */\n"
+             "    {9}, /* most_speed_mrad_per_s */\n    {10}, /* no_current_speed_mrad_per_s */\n    {11} /* winding_per_stator_K "
+             "*/}};\n\n",
              prefix, table.speed_mrad_per_s.size(), table.stator_mC.size(), table.winding_mC.size(), table.unit_mA2,
              table.resistance_at_first, table.resistance_per_mK, table.most_current_mA, table.straight_below_mA,
-             table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K);
+             table.most_speed_mrad_per_s, table.no_current_speed_mrad_per_s, table.winding_per_stator_K,
+             std::ldexp(static_cast<double>(table.resistance_at_first), -20),
+             1000.0 * std::ldexp(static_cast<double>(table.resistance_per_mK), -40));
 }
 
 /// Generates the function that computes each node's change over a period, in 2^-kStoredBits K, with the heat added for rounding.
@@ -296,13 +307,18 @@ std::string changes_function(const Derating& derating, const std::string& prefix
   const int period_bits = 29 - static_cast<int>(std::floor(std::log2(period_s)));
   const auto period = static_cast<std::int64_t>(std::ceil(std::ldexp(period_s, period_bits)));
   std::string text = fmt::format(
-      "/* temperature rise of every node in one period, with a bound of the rounding error added */\n"
+      "/* Temperature rise of every node in one period, rounded up. A comment behind a line is the value of its last bit; \"@_product\" "
+      "and\n"
+      "   \"@_quotient\" multiply and divide, and its last argument moves the binary point. */\n"
       "static inline void {0}_changes(const {0}_input *input, const int32_t *state_C, int64_t *change) {{\n{1}",
       prefix, lines.text);
   for (std::size_t node = 0; node < lines.rates.size(); ++node) {
     const FixedPoint& rate = lines.rate_K_per_s[node];
-    text += fmt::format("  change[{}] = ((((int64_t){} + {}) * {}) / INT64_C({})) + 1;\n", node, lines.rates[node], heat_for_rounding(rate),
-                        period, std::int64_t{1} << (rate.bits + period_bits - kStoredBits));
+    text += fmt::format(
+        "  /* {0}: {1} bounds the rounding error of the rate, {2} is the period of {3:.9g} s in 2^-{4} s; the result is in 2^-{5} K */\n"
+        "  change[{6}] = ((((int64_t){7} + {1}) * {2}) / INT64_C({8})) + 1;\n",
+        c_header::in_comment(derating.observer.state_names()[node]), heat_for_rounding(rate), period, period_s, period_bits, kStoredBits,
+        node, lines.rates[node], std::int64_t{1} << (rate.bits + period_bits - kStoredBits));
   }
   return text + "}\n\n";
 }
@@ -317,15 +333,77 @@ std::vector<std::int64_t> candidates(const Derating& derating, observed::Signal 
   return values;
 }
 
-std::string plausible_ranges(const Derating& derating) {
-  std::string text;
+/// Name of the constant of an input: PREFIX_MOST_PLAUSIBLE_CURRENT_MA.
+std::string constant_of(const std::string& capital, std::string_view what, const InputField& field) {
+  return fmt::format("{}_{}_{}", capital, what, c_header::in_capitals(std::string(field.name)));
+}
+
+std::string plausible_constants(const Derating& derating, const std::string& capital) {
+  std::string text =
+      "/* A reading outside of its plausible range is replaced by the UNKNOWN value: the hottest that motor, driver and battery permit. "
+      "*/\n";
   for (const InputField& field : kInputs) {
     const AcceptedRange accepted(plausible_range(derating, field.signal));
-    const std::string_view flag = field.signal == observed::current ? "is_current_unknown"
-                                  : field.signal == observed::speed ? "is_speed_unknown"
-                                                                    : "is_ambient_unknown";
+    text += fmt::format("#define {} {}\n#define {} {}\n#define {} {}\n", constant_of(capital, "LEAST_PLAUSIBLE", field),
+                        accepted.least < 0 ? fmt::format("({})", accepted.least) : fmt::format("{}", accepted.least),
+                        constant_of(capital, "MOST_PLAUSIBLE", field), accepted.most, constant_of(capital, "UNKNOWN", field),
+                        candidates(derating, field.signal).front());
+  }
+  return text + "\n";
+}
+
+std::string plausible_ranges(const std::string& capital) {
+  std::string text;
+  for (const InputField& field : kInputs) {
     text += fmt::format("  if ((in.{0} < {1}) || (in.{0} > {2})) {{\n    in.{0} = {3};\n    {4} = true;\n  }}\n", field.name,
-                        accepted.least, accepted.most, candidates(derating, field.signal).front(), flag);
+                        constant_of(capital, "LEAST_PLAUSIBLE", field), constant_of(capital, "MOST_PLAUSIBLE", field),
+                        constant_of(capital, "UNKNOWN", field), field.flag);
+  }
+  return text;
+}
+
+/// Inputs with several possible values; one with a single value needs no sweep.
+std::vector<InputField> swept_inputs(const Derating& derating) {
+  std::vector<InputField> swept;
+  for (const InputField& field : kInputs) {
+    if (field.signal != observed::ambient && candidates(derating, field.signal).size() > 1) {
+      swept.push_back(field);
+    }
+  }
+  return swept;
+}
+
+/// Generates the sweeps over possible values. Several inputs need two passes, because the hottest value of one may depend on another.
+std::string sweeps(const Derating& derating, const std::vector<InputField>& swept) {
+  const std::string indent = swept.size() > 1 ? "    " : "  ";
+  std::string text = swept.size() > 1 ? "  for (pass = 0; pass < 2; ++pass) {\n" : "";
+  for (const InputField& field : swept) {
+    text += fmt::format("{0}if ({1}) {{\n{0}  @_sweep(&in, &in.{2}, @_possible_{2}, {3}, state_C, change);\n{0}}}\n", indent, field.flag,
+                        field.name, candidates(derating, field.signal).size());
+  }
+  return text + (swept.size() > 1 ? "  }\n" : "");
+}
+
+/// Generates `on`, the inputs of the worst-case heating, and the loops over their possible values around it.
+integer_form::HeatingInputs heating_inputs(const Derating& derating, const std::vector<InputField>& swept) {
+  integer_form::HeatingInputs made;
+  for (const InputField& field : kInputs) {
+    const bool is_swept = std::ranges::find(swept, field.signal, &InputField::signal) != swept.end();
+    if (is_swept) {
+      made.looped.push_back({std::string(field.name), candidates(derating, field.signal).size()});
+    }
+    made.fields += fmt::format("{}{}", made.fields.empty() ? "" : ", ",
+                               is_swept                            ? fmt::format("@_possible_{0}[each_{0}]", field.name)
+                               : field.signal == observed::ambient ? std::string("@CAP@_HOTTEST_AMBIENT_MC")
+                                                                   : constant_of("@CAP@", "UNKNOWN", field));
+  }
+  return made;
+}
+
+std::string possible_values(const Derating& derating, const std::string& prefix, const std::vector<InputField>& swept) {
+  std::string text = swept.empty() ? "" : "/* possible values of an unknown input */\n";
+  for (const InputField& field : swept) {
+    text += integers("int32_t", fmt::format("{}_possible_{}", prefix, field.name), candidates(derating, field.signal));
   }
   return text;
 }
@@ -345,17 +423,16 @@ std::string write_c_header_q15(const Derating& derating) {
   const std::string capital = c_header::in_capitals(prefix);
   const IntegerLines lines = integer_form::integer_lines(derating, prefix);
   const QuantisedTable table(derating.table);
-  const std::vector<std::int64_t> currents = candidates(derating, observed::current);
-  const std::vector<std::int64_t> speeds = candidates(derating, observed::speed);
+  const std::vector<InputField> swept = swept_inputs(derating);
   const std::size_t nodes = derating.observer.state_count();
-  const c_header::Words words{{"@BELIEFS@", plausible_ranges(derating)},
-                              {"@BODIES@", nodes > 2 ? std::string(kBodies) : ""},
+  const c_header::Words words{{"@PLAUSIBLE@", plausible_ranges(capital)},
+                              {"@SWEEPS@", sweeps(derating, swept)},
+                              {"@PASS@", swept.size() > 1 ? "  int32_t pass;\n" : ""},
+                              {"@BODIES@", std::string(nodes == 3  ? kThirdBody
+                                                       : nodes > 3 ? kBodies
+                                                                   : "")},
                               {"@NODES@", std::to_string(nodes)},
-                              {"@CURRENTS@", std::to_string(currents.size())},
-                              {"@SPEEDS@", std::to_string(speeds.size())},
                               {"@MOST_STATE@", std::to_string(static_cast<int>(kMostState_C))},
-                              {"@READ_HOTTER@", std::to_string(kReadHotter_mC)},
-                              {"@PER_STATE@", std::to_string(1 << (kStoredBits - integer_form::kStateBits))},
                               {"@CAP@", capital},
                               {"@", prefix}};
   const auto define = [&](std::string_view name, std::int64_t value) { return fmt::format("#define {}_{} {}\n", capital, name, value); };
@@ -370,16 +447,22 @@ std::string write_c_header_q15(const Derating& derating) {
       define("COLDEST_AMBIENT_MC", static_cast<std::int64_t>(std::floor(1000.0 * derating.options.coldest_ambient_C))) +
       fmt::format("#define {0}_STORED_PER_K INT64_C({1})\n#define {0}_STARTED 0x48454154u\n#define {0}_PERIOD_US INT64_C({2})\n", capital,
                   std::int64_t{1} << kStoredBits, period_us) +
+      fmt::format("#define {0}_STORED_PER_STATE {1} /* stored temperatures are in 2^-{2} K, those of the laws in 2^-{3} K */\n"
+                  "#define {0}_ONE_THOUSANDTH {5} /* 0.001 in 2^-39 */\n"
+                  "#define {0}_READ_HOTTER_MC {4} /* added to a temperature that is read, more than all rounding errors */\n",
+                  capital, 1 << (kStoredBits - integer_form::kStateBits), kStoredBits, integer_form::kStateBits, kReadHotter_mC,
+                  integer_form::kOneThousandth) +
       fmt::format("#define {0}_SIGNATURE 0x{1:08x}u\n#define {0}_SAVED_SIZE {2}\n#define {0}_MOST_COOLING_STEPS {3}\n"
                   "#define {0}_MOST_HEATING_STEPS {4}\n\n",
                   capital, guard_signature(derating, "q15"), 8 * (1 + nodes), kMostCoolingSteps, kMostHeatingSteps) +
-      structures(derating, prefix) + table_text(table, prefix) + c_header::replaced(kHelpers, words) +
+      plausible_constants(derating, capital) + structures(derating, prefix) + table_text(table, prefix) +
+      c_header::replaced(kHelpers, words) +
       (lines.text.find("_quotient(") == std::string::npos ? "" : c_header::replaced(kQuotient, words)) +
-      changes_function(derating, prefix, lines) + integers("int32_t", prefix + "_possible_current_mA", currents) +
-      integers("int32_t", prefix + "_possible_speed_mrad_per_s", speeds) +
+      c_header::replaced(changes_function(derating, prefix, lines), {{"@", prefix}}) + possible_values(derating, prefix, swept) +
       "/* Resting temperatures: steady state of the nodes without current in the hottest air, rounded up. */\n" +
-      integers("int64_t", prefix + "_resting", resting_temperatures(derating)) + "\n" + c_header::replaced(kStep, words) + "\n" +
-      integer_form::integer_memory(words) + "#endif\n");
+      integers("int64_t", prefix + "_resting", resting_temperatures(derating)) + "\n" + c_header::replaced(kStart, words) +
+      (swept.empty() ? "" : c_header::replaced(kSweep, words)) + c_header::replaced(kStep, words) + "\n" +
+      integer_form::integer_memory(words, heating_inputs(derating, swept)) + "#endif\n");
 }
 
 }  // namespace

@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <numbers>
+#include <set>
 #include <string>
+#include <string_view>
 
+#include "base/diagnostic.h"
 #include "derate/export_text.h"
 #include "derate/exporter.h"
-#include "derate/step_names.h"
+#include "derate/rate_lines.h"
 
 namespace heatsoak::derate::exporters {
 namespace {
@@ -30,83 +32,59 @@ std::string literal(double value) {
   return text.find('.') != std::string::npos ? text : text.insert(std::min(exponent, text.size()), ".0");
 }
 
-/// Names of the steps by their index. Constants and inputs have none, because they stand where they are used.
-using Names = std::map<int, std::string>;
-
-std::string operand(const thermal::Formula& formula, const Names& names, int place) {
-  const thermal::Formula::Step& step = formula.steps()[static_cast<std::size_t>(place)];
-  if (step.operation == thermal::Operation::constant) {
-    return literal(step.value);
-  }
-  if (step.operation != thermal::Operation::input) {
-    return names.at(place);
-  }
-  const auto input = static_cast<std::size_t>(step.left);
-  return input < observed::kSignalCount ? std::string("hs-") + (input == observed::current ? "current-A"
-                                                                : input == observed::speed ? "speed-rad-per-s"
-                                                                                           : "ambient-C")
-                                        : fmt::format("hs-state{}-C", input - observed::kSignalCount);
+/// Names of the function's inputs.
+std::string signal_name(observed::Signal signal) {
+  return signal == observed::current ? "hs-current-A" : signal == observed::speed ? "hs-speed-rad-per-s" : "hs-ambient-C";
 }
 
-std::string expression(const thermal::Formula& formula, const Names& names, const thermal::Formula::Step& step) {
-  const std::string left = operand(formula, names, step.left);
-  const std::string right = step.right ? operand(formula, names, *step.right) : "";
-  switch (step.operation) {
-    case thermal::Operation::add:
-      return fmt::format("(+ {} {})", left, right);
-    case thermal::Operation::subtract:
-      return fmt::format("(- {} {})", left, right);
-    case thermal::Operation::multiply:
-      return fmt::format("(* {} {})", left, right);
-    case thermal::Operation::divide:
-      return fmt::format("(/ {} {})", left, right);
-    case thermal::Operation::magnitude:
-      return fmt::format("(if (< {0} 0.0) (- 0.0 {0}) {0})", left);
-    case thermal::Operation::positive_part:
-      return fmt::format("(if (> {0} 0.0) {0} 0.0)", left);
-    case thermal::Operation::square_root:
-      return fmt::format("(sqrt {})", left);
-    case thermal::Operation::power:
-      return fmt::format("(pow {} {})", left, right);
-    default:
-      return fmt::format("(exp {})", left);
+std::string state_name(const Observer& observer, std::size_t node, std::string_view what) {
+  return lisp_name("hs-", fmt::format("{}_{}", identifier(observer.state_names()[node]), what));
+}
+
+/// Throws Failure (bad_input) if two nodes have the same name in the script, where each character other than a letter or digit is "-".
+void require_different_names(const Observer& observer) {
+  std::set<std::string> names;
+  for (std::size_t node = 0; node < observer.state_count(); ++node) {
+    if (!names.insert(state_name(observer, node, "C")).second) {
+      throw base::Failure(base::ExitCode::bad_input,
+                          fmt::format("vesc: two nodes have the name {} in the script; rename one", state_name(observer, node, "C")));
+    }
   }
 }
 
 /// One Euler step over `dt` seconds. The rounding of each step is carried to the next (Kahan 1965).
 std::string step_function(const Observer& observer) {
-  const thermal::Formula& formula = observer.formula();
-  const std::vector<char> needed = formula.needed_for(observer.rate_steps());
-  StepNames unique(observer, {"current_A", "speed_rad_per_s", "ambient_C", "may_drive", "last_A", "longest_s"});
-  Names names;
-  std::string text = "(defun hs-step (hs-current-A hs-speed-rad-per-s hs-ambient-C dt-s) {\n";
-  for (std::size_t i = 0; i < needed.size(); ++i) {
-    const thermal::Formula::Step& step = formula.steps()[i];
-    if (needed[i] != 0 && step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input) {
-      std::string name = "hs-" + unique.name_for(static_cast<int>(i));
-      std::ranges::replace(name, '_', '-');
-      text += fmt::format("  (var {} {})\n", name, expression(formula, names, step));
-      names.emplace(static_cast<int>(i), std::move(name));
+  LineStyle style{.literal = literal, .signal = signal_name, .square_root = "sqrt", .exponential = "exp", .power = "pow"};
+  style.notation = Notation::lisp;
+  style.prefix = "hs-";
+  style.reserved = {"current_A", "speed_rad_per_s", "ambient_C", "may_drive", "last_A", "longest_s"};
+  for (const std::string& node : observer.state_names()) {
+    for (const std::string_view what : {"C", "carry_K", "change_K", "next_C", "rate_K_per_s"}) {
+      style.reserved.insert(fmt::format("{}_{}", identifier(node), what));
     }
   }
+  std::string text =
+      "(defun hs-step (hs-current-A hs-speed-rad-per-s hs-ambient-C dt-s) {\n" + RateLines(observer, observer.rate_steps(), style).text();
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
-    text += fmt::format("  (var change{0}-K (- (* dt-s {1}) hs-carry{0}-K))\n", node, operand(formula, names, observer.rate_steps()[node]));
+    text += fmt::format("  (var {} (- (* dt-s {}) {}))\n", state_name(observer, node, "change_K"),
+                        state_name(observer, node, "rate_K_per_s"), state_name(observer, node, "carry_K"));
   }
   for (std::size_t node = 0; node < observer.state_count(); ++node) {
     text += fmt::format(
-        "  (var next{0}-C (+ hs-state{0}-C change{0}-K))\n"
-        "  (setq hs-carry{0}-K (- (- next{0}-C hs-state{0}-C) change{0}-K))\n"
-        "  (setq hs-state{0}-C next{0}-C)\n",
-        node);
+        "  (var {3} (+ {0} {2}))\n"
+        "  (setq {1} (- (- {3} {0}) {2}))\n"
+        "  (setq {0} {3})\n",
+        state_name(observer, node, "C"), state_name(observer, node, "carry_K"), state_name(observer, node, "change_K"),
+        state_name(observer, node, "next_C"));
   }
-  return text + "  hs-state0-C\n})\n";
+  return text + fmt::format("  {}\n}})\n", state_name(observer, 0, "C"));
 }
 
 std::string states(const Derating& derating) {
   std::string text;
   for (std::size_t node = 0; node < derating.observer.state_count(); ++node) {
-    text +=
-        fmt::format("(define hs-state{0}-C hs-start-C)  ; {1}\n(define hs-carry{0}-K 0.0)\n", node, derating.observer.state_names()[node]);
+    text += fmt::format("(define {} hs-start-C)\n(define {} 0.0)  ; rounding error of the last step\n",
+                        state_name(derating.observer, node, "C"), state_name(derating.observer, node, "carry_K"));
   }
   return text;
 }
@@ -170,10 +148,11 @@ constexpr double kStepsPerTimeConstant = 20.0;
 std::string write_vesc(const Derating& derating) {
   const CurrentRamp ramp = ramp_for("vesc", derating, RampSignal::winding, kFullBeyond_K);
   require_three_signals("vesc", derating);
+  require_different_names(derating.observer);
   const double dc_per_phase_ratio = derating.is_brushless ? kDcPerIq_ratio : 1.0;
   const MotorType& type = derating.is_brushless ? kFoc : kDc;
   return provenance_lines(derating, ";") + ramp_lines(derating, RampSignal::winding, ramp, 1.0 / dc_per_phase_ratio, ";") +
-         moved_ramp_lines(derating, ramp, 1.0 / dc_per_phase_ratio) + setting_lines(type) +
+         moved_ramp_lines(derating, ramp, 1.0 / dc_per_phase_ratio) + setting_lines(type) + law_lines(derating, ";") +
          fmt::format(
              "; Currents are {}. Set the motor temperature sensor to Disabled, or the override has no effect; set the motor's poles.\n"
              "; The motor temperature that the controller shows is the pessimistic winding temperature. The script samples the current "

@@ -11,6 +11,7 @@
 
 #include "base/diagnostic.h"
 #include "base/unit_names.h"
+#include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "derate/plausible_range.h"
 #include "derate/step_names.h"
@@ -35,7 +36,7 @@ class Writer {
       : derating_(derating),
         prefix_(prefix),
         formula_(derating.observer.formula()),
-        unique_(derating.observer, {"input", "state_C", "change"}),
+        unique_(derating.observer, derating.observer.rate_steps(), {"input", "state_C", "change"}),
         values_(formula_.steps().size()) {}
 
   IntegerLines write() {
@@ -129,13 +130,13 @@ class Writer {
     const auto signal = static_cast<observed::Signal>(input);
     const PlausibleRange validated = plausible_range(derating_, signal);
     FixedPoint made{.low = validated.low, .high = validated.high, .bits = bits_for(validated.low, validated.high), .most_error = 0.0};
-    // The factor 2^bits/1000 has 30 bits and its own shift.
+    // The factor 2^bits/1000 has 30 bits, which are those of kOneThousandth, and its own shift.
     const double per_thousandth = std::ldexp(1.0 / kThousandths_ratio, made.bits);
     const int shift = bits_for(per_thousandth, per_thousandth);
     made.most_error = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);
     set(place, made,
-        fmt::format("{}_product(input->{}, {}, {})", prefix_, integer_name(signal),
-                    static_cast<std::int64_t>(std::llround(std::ldexp(per_thousandth, shift))), power_of_two(shift)));
+        fmt::format("{}_product(input->{}, {}_ONE_THOUSANDTH, {})", prefix_, integer_name(signal), c_header::in_capitals(prefix_),
+                    power_of_two(shift)));
   }
 
   [[nodiscard]] static std::string_view integer_name(observed::Signal signal) {

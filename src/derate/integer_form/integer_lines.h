@@ -1,6 +1,7 @@
 // The observer's rates as statements over 32-bit integers, for controllers without a floating-point unit.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace heatsoak::derate::integer_form {
 inline constexpr int kStateBits = 20;
 /// Inputs are integers in thousandths: mA, mrad/s, 0.001 °C.
 inline constexpr double kThousandths_ratio = 1000.0;
+/// 1/1000 in 2^-39, which is PREFIX_ONE_THOUSANDTH in the statements.
+inline constexpr std::int64_t kOneThousandth = 549755814;
 
 /// A value n·2^-bits with |n| < 2^30.
 struct FixedPoint {

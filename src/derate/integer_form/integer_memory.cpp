@@ -1,5 +1,7 @@
 #include "derate/integer_form/integer_memory.h"
 
+#include <fmt/format.h>
+
 #include <string_view>
 
 namespace heatsoak::derate::integer_form {
@@ -48,7 +50,7 @@ static inline void @_stored_changes(const @_input *input, const int64_t *stored,
   int32_t state_C[@NODES@];
   int32_t node;
   for (node = 0; node < @NODES@; ++node) {
-    state_C[node] = (int32_t)(stored[node] / @PER_STATE@);
+    state_C[node] = (int32_t)(stored[node] / @CAP@_STORED_PER_STATE);
   }
   @_changes(input, state_C, change);
 }
@@ -152,9 +154,7 @@ static inline void @_heat(int32_t unsaved_ms, int64_t *stored) {
   int64_t largest[@NODES@];
   /* 0.1 % more, because the period is rounded */
   int64_t left_us = (unsaved_ms >= 0) ? ((int64_t)unsaved_ms * 1001) : INT64_C(1000000000000000);
-  int32_t current;
-  int32_t speed;
-  int32_t node;
+@EACH@  int32_t node;
   int32_t step;
   for (node = 0; node < @NODES@; ++node) {
     most = (stored[node] > most) ? stored[node] : most;
@@ -163,16 +163,7 @@ static inline void @_heat(int32_t unsaved_ms, int64_t *stored) {
     for (node = 0; node < @NODES@; ++node) {
       largest[node] = 0;
     }
-    for (current = 0; current < @CURRENTS@; ++current) {
-      for (speed = 0; speed < @SPEEDS@; ++speed) {
-        const @_input on = {@_possible_current_mA[current], @_possible_speed_mrad_per_s[speed], @CAP@_HOTTEST_AMBIENT_MC};
-        @_stored_changes(&on, stored, change);
-        for (node = 0; node < @NODES@; ++node) {
-          largest[node] = (change[node] > largest[node]) ? change[node] : largest[node];
-        }
-      }
-    }
-    for (node = 0; node < @NODES@; ++node) {
+@LARGEST@    for (node = 0; node < @NODES@; ++node) {
       stored[node] += largest[node];
       stored[node] = (stored[node] < most) ? stored[node] : most;
     }
@@ -220,9 +211,36 @@ static inline @_restored_from @_restore(@_state *state, const uint8_t *buffer, i
 
 )";
 
+std::string counters(const HeatingInputs& inputs) {
+  std::string text;
+  for (const auto& [field, count] : inputs.looped) {
+    text += fmt::format("  int32_t each_{};\n", field);
+  }
+  return text;
+}
+
+/// Generates the largest temperature rise of each node over the possible inputs.
+std::string largest_changes(const HeatingInputs& inputs) {
+  std::string indent = "    ";
+  std::string text;
+  std::string ends;
+  for (const auto& [field, count] : inputs.looped) {
+    text += fmt::format("{0}for (each_{1} = 0; each_{1} < {2}; ++each_{1}) {{\n", indent, field, count);
+    ends = fmt::format("{}}}\n{}", indent, ends);
+    indent += "  ";
+  }
+  return text + fmt::format(
+                    "{0}const @_input on = {{{1}}};\n{0}@_stored_changes(&on, stored, change);\n"
+                    "{0}for (node = 0; node < @NODES@; ++node) {{\n"
+                    "{0}  largest[node] = (change[node] > largest[node]) ? change[node] : largest[node];\n{0}}}\n{2}",
+                    indent, inputs.fields, ends);
+}
+
 }  // namespace
 
-std::string integer_memory(const c_header::Words& words) {
+std::string integer_memory(const c_header::Words& guard_words, const HeatingInputs& inputs) {
+  c_header::Words words{{"@EACH@", counters(inputs)}, {"@LARGEST@", largest_changes(inputs)}};
+  words.insert(words.end(), guard_words.begin(), guard_words.end());
   std::string text;
   for (const std::string_view part : {kPacked, kCool, kUnsaved, kRestore}) {
     text += c_header::replaced(part, words);
