@@ -1,12 +1,21 @@
 #include "recording/inspect_log.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "recording/mapping.h"
 #include "recording/read_recording.h"
 #include "recording/recording_stream.h"
+#include "recording/suggested_mapping.h"
 #include "recording/write_recording.h"
 
 namespace heatsoak::recording {
 namespace {
+
+/// Returns whether the note is about a column that may contain a quantity of the table under another name.
+bool may_be_mapped(const ReadingNote& note) {
+  return std::holds_alternative<ColumnWithoutUnit>(note) || std::holds_alternative<AdditionalSignal>(note);
+}
 
 InspectedLog inspected(const std::filesystem::path& file, const std::string& map) {
   InspectedLog log;
@@ -15,6 +24,9 @@ InspectedLog inspected(const std::filesystem::path& file, const std::string& map
   Assessment assessment;
   for (Recording part; stream.next(part);) {
     assessment.add(part);
+  }
+  if (mapping.is_canonical() && std::ranges::any_of(log.report.notes, may_be_mapped)) {
+    log.suggested_mapping = suggested_mapping(stream.header());
   }
   log.quality = assessment.conclude(log.report);
   log.condensed = assessment.condensed();

@@ -16,6 +16,7 @@ struct InspectedLog {
   CondensedRecording condensed;  ///< with the channels, motor and conditions of the log
   RecordingReport report;
   DataQuality quality;
+  std::string suggested_mapping;  ///< mapping file to start from, if a column is not used as a quantity of the table may be; else empty
 
   /// Returns whether the log can be used for at least one purpose.
   [[nodiscard]] bool is_good() const { return quality.thermal.is_good() || quality.drive.is_good(); }

@@ -190,8 +190,7 @@ std::string nearest_quantity(std::string_view key) {
     }
   }
   if (!same.empty() && same != key) {
-    return fmt::format("; did you mean '{0}'? A column in another unit is read with a mapping: {0} = {{ column = \"{1}\", unit = … }}",
-                       same, key);
+    return fmt::format("; did you mean '{}'? A column in another unit is read with a mapping (--map)", same);
   }
   return base::did_you_mean(key, names);
 }

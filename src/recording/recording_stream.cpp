@@ -17,6 +17,7 @@
 #include "recording/noise.h"
 #include "recording/row_order.h"
 #include "recording/screening.h"
+#include "recording/suggested_mapping.h"
 
 namespace heatsoak::recording {
 namespace {
@@ -138,6 +139,7 @@ class RecordingStream::Intake {
   }
 
   [[nodiscard]] std::size_t bytes_read() const { return table_.bytes_read(); }
+  [[nodiscard]] std::span<const std::string> header() const { return table_.header(); }
   [[nodiscard]] bool has_numbers(std::size_t channel) const { return has_numbers_[channel] != 0; }
 
  private:
@@ -184,21 +186,23 @@ class RecordingStream::Intake {
     }
   }
 
-  /// Returns the message about a log without time_s. A column with the time in another unit must not be renamed.
+  /// Returns the message about a log without time_s, with a mapping to start from. A column with the time in another unit must not be
+  /// renamed.
   [[nodiscard]] std::string missing_time() const {
     const std::vector<std::string> names(table_.header().begin(), table_.header().end());
     for (const std::string& name : names) {
       const std::optional<base::UnitOfName> other = base::unit_of_name(name);
       if (other && (other->quantity == "time" || other->quantity == "t") && other->unit != "s") {
-        return fmt::format(
-            "there is no such column; '{0}' is in another unit and is read with a mapping (--map FILE.toml): time_s = {{ "
-            "column = \"{0}\", unit = \"{1}\" }}",
-            name, other->unit);
+        return fmt::format("there is no such column; '{}' is in another unit. {}", name, how_to_map());
       }
     }
     const std::string similar = base::did_you_mean("time_s", names);
-    return fmt::format("there is no such column{}{} foreign log is read with a mapping (--map FILE.toml)", similar,
-                       similar.empty() ? "; a" : " A");
+    return fmt::format("there is no such column{} {}", similar.empty() ? "." : similar, how_to_map());
+  }
+
+  [[nodiscard]] std::string how_to_map() const {
+    return fmt::format("A foreign log is read with a mapping. Complete this one and save it as {}.map.toml:\n{}",
+                       log_.filename().string(), suggested_mapping(table_.header()));
   }
 
   std::optional<BlockExpression> condition(const std::string& text, const base::Location& at, const char* key,
@@ -443,6 +447,8 @@ RecordingStream::~RecordingStream() = default;
 
 bool RecordingStream::next(Recording& part) { return intake_->next(part); }
 std::size_t RecordingStream::bytes_read() const { return intake_->bytes_read(); }
+
+std::span<const std::string> RecordingStream::header() const { return intake_->header(); }
 bool RecordingStream::has_numbers(std::size_t channel) const { return intake_->has_numbers(channel); }
 
 }  // namespace heatsoak::recording

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <string>
 
 #include "recording/mapping.h"
 #include "recording/recording.h"
@@ -27,6 +29,8 @@ class RecordingStream {
   /// Reads the next rows of all channels; returns false at the end. `run_begins` contains 0 only if a run begins with the part.
   bool next(Recording& part);
   [[nodiscard]] std::size_t bytes_read() const;
+  /// Names of the columns of the file.
+  [[nodiscard]] std::span<const std::string> header() const;
   /// True if the channel has had a valid number so far.
   [[nodiscard]] bool has_numbers(std::size_t channel) const;
 

@@ -97,8 +97,8 @@ TEST(WordsOfLogs, LacksDelaysAndNotes) {
   expect_words<ReadingNote>({
       {ColumnWithoutUnit{5, "comment"}, "column 5 'comment' is not used: its name does not end in a unit"},
       {AdditionalSignal{"stator_F"},
-       "stator_F is used as an additional signal; did you mean 'stator_C'? A column in another unit is read with a mapping: stator_C = { "
-       "column = \"stator_F\", unit = … }"},
+       "stator_F is used as an additional signal; did you mean 'stator_C'? A column in another unit is read with a mapping "
+       "(--map)"},
       {AdditionalSignal{"windin_C"}, "windin_C is used as an additional signal; did you mean 'winding_C'?"},
       {NotRecorded{"coolant_C", "T_cool"}, "coolant_C is not recorded: no column 'T_cool'"},
       {ChannelWithoutNumbers{"stator_C", 1800}, "stator_C is left out: not one number in 1800 rows"},

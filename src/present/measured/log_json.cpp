@@ -79,6 +79,7 @@ Json log_json(const recording::InspectedLog& log) {
               {"clock_offsets", clocks_json(quality)},
               {"suspicions", words_of(quality.suspicions)},
               {"notes", words_of(report.notes)},
+              {"suggested_mapping", log.suggested_mapping.empty() ? Json() : Json(log.suggested_mapping)},
               {"thermal", {{"good", quality.thermal.is_good()}, {"lacks", words_of(quality.thermal.lacks)}}},
               {"drive", {{"good", quality.drive.is_good()}, {"lacks", words_of(quality.drive.lacks)}}}};
   return base::with_ranges(std::move(result), {{"sampling", base::kNotNegative},
