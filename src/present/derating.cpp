@@ -82,28 +82,28 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
   const derate::TableBound& bound = derating.table.bound;
   document.add_note(
       Severity::background,
-      fmt::format("Table: {} bytes. Its current is never above the exact answer of the network, and at most {} % below it from {} A up. "
-                  "The current changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
+      fmt::format("Table: {} bytes. Its current never exceeds the exact answer of the network. It is at most {} % lower, from {} A up. "
+                  "It changes by at most {} A per K of the winding, {} A per K of the stator and {} A per rad/s.",
                   derating.table.size_bytes(), derate::significant_above(100.0 * bound.shortfall_ratio, 2),
                   base::significant(derating.table.straight_below_A, 2), derate::significant_above(bound.winding_slope_A_per_K, 2),
                   derate::significant_above(bound.stator_slope_A_per_K, 2), derate::significant_above(bound.speed_slope_A_s_per_rad, 2)));
 }
 
-/// Adds what the memory over power-off is worth, and a warning if the motor can be pushed to a speed at which it cannot turn itself.
+/// Adds the allowed currents after a loss of power, and a warning if the current for an unknown speed does not suffice to turn the motor.
 void add_power_off_and_friction(Document& document, const derate::Derating& derating) {
-  std::string cases;
+  std::vector<std::string> cases;
   for (const derate::PowerOffCase& each : derate::power_off_report(derating).cases) {
-    cases += fmt::format("{}{} {:.1f} A", cases.empty() ? "" : "; ", each.name, fmt::join(each.allowed_A, ", "));
+    cases.push_back(fmt::format("{}: {:.1f} A", each.name, fmt::join(each.allowed_A, ", ")));
   }
   document.add_note(Severity::background,
-                    fmt::format("A guard that saves and restores its state allows these currents at standstill {:.0f} s after power-on, if "
-                                "the motor was as hot as continuous use permits when the power failed: {}.",
-                                fmt::join(derate::kPowerOffMoments_s, ", "), cases));
+                    fmt::format("Loss of power at the temperatures of continuous use. The guard saves and restores its state. Allowed "
+                                "current at standstill {:.0f} s after power-on: {}.",
+                                fmt::join(derate::kPowerOffMoments_s, ", "), fmt::join(cases, "; ")));
   const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
   if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {
     document.add_note(Severity::warning,
-                      fmt::format("The continuous current for every speed, {:.2f} A, is below the no-load current of {:.2f} A: a wheel of "
-                                  "unknown speed stops. Above {:.0f} rad/s, where only a push turns the motor, it cannot turn for ever.",
+                      fmt::format("A wheel whose speed is unknown stops: the guard then allows {:.2f} A, and the no-load current is {:.2f} A. "
+                                  "If the speed is known, the allowed current suffices up to {:.0f} rad/s; only a push turns the motor faster.",
                                   limp_A, friction->needed_A, friction->held_rad_per_s));
   }
 }

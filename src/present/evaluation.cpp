@@ -294,20 +294,19 @@ namespace {
 std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id, double ambient_C) {
   if (rests.front().over_without_current) {
     return fmt::format(
-        "Rest of a hot {}: no rest lets it play on within its limits, because even without current it does not stay below them in air of "
-        "{:.0f} °C; all values are nominal.",
+        "Rest of a hot {}: no rest suffices, because the motor exceeds its limits even without current in air of {:.0f} °C. All values are "
+        "nominal.",
         motor_id, ambient_C);
   }
   std::string text;
   for (const select::RestOfHotMotor& each : rests) {
-    const std::string rest = each.all_s ? duration_text(*each.all_s)
-                                        : fmt::format("more than {} at {} of {} moments of the duty", duration_text(select::kLongestRest_s),
-                                                      each.starts_never, each.starts);
-    text += fmt::format("{}{} before {} of play", text.empty() ? "" : ", ", rest, duration_text(each.play_s));
+    const std::string play = duration_text(each.play_s);
+    text += each.all_s ? fmt::format(" {} of rest suffice before {} of play.", duration_text(*each.all_s), play)
+                       : fmt::format(" Before {} of play, {} of rest do not suffice at {} of {} moments of the duty.", play,
+                                     duration_text(select::kLongestRest_s), each.starts_never, each.starts);
   }
-  return fmt::format(
-      "Rest of a hot {}, so that it then stays within its limits: {}. Hot: in steady state at its limit; all values are nominal.", motor_id,
-      text);
+  return fmt::format("Rest of a hot {}, which is in steady state at its limit and then must stay within its limits:{} All values are nominal.",
+                     motor_id, text);
 }
 
 /// Returns the ranking by samples with its notes.

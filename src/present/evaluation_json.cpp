@@ -68,6 +68,7 @@ Json json(const select::MotorEvaluation& each) {
               {"wheel", each.wheel},
               {"margin_K", rounded(each.margin_K, 2)},
               {"stator_margin_K", rounded(each.stator_margin_K, 2)},
+              {"ranking_margin_K", rounded(select::nearest_margin_K(each), 2)},
               {"margin_A", rounded(each.margin_A, 4)},
               {"stator_limit_C", rounded(each.stator_limit_C, 2)},
               {"delivered_share", rounded(each.least_torque_share, 4)},

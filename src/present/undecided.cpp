@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/lanes.h"
@@ -47,21 +50,22 @@ std::string note_on_one(const select::MotorEvaluation& motor) {
                      deciding_words(motor));
 }
 
-/// The motors that need the fewest samples come first.
+/// The motors that need the fewest samples come first; those that need equal numbers stand together.
 std::string note_on_several(const std::vector<const select::MotorEvaluation*>& motors) {
   const int most = select::most_samples_at_all(motors.front()->games > 0);
-  const auto shown = [most](const std::optional<int>& samples) {
-    return samples ? fmt::format("{}", *samples) : fmt::format("over {}", most);
-  };
-  std::vector<std::pair<int, std::string>> needs;
+  constexpr int kNever = std::numeric_limits<int>::max();
+  std::map<std::pair<int, int>, std::vector<std::string>> ids;  // by the numbers of samples
   for (const select::MotorEvaluation* each : motors) {
     const auto [half, nine_in_ten] = select::deciding_samples(*each);
-    needs.emplace_back(half.value_or(most), half ? fmt::format("{} {} to {}", each->motor_id, shown(half), shown(nine_in_ten))
-                                                 : fmt::format("{} {}", each->motor_id, shown(half)));
+    ids[{half.value_or(kNever), nine_in_ten.value_or(kNever)}].push_back(each->motor_id);
   }
-  std::ranges::stable_sort(needs, {}, &std::pair<int, std::string>::first);
+  const auto shown = [most](int samples) { return samples == kNever ? fmt::format("over {}", most) : fmt::format("{}", samples); };
   std::vector<std::string> words;
-  std::ranges::transform(needs, std::back_inserter(words), &std::pair<int, std::string>::second);
+  for (const auto& [needs, of_needs] : ids) {
+    const auto& [half, nine_in_ten] = needs;
+    words.push_back(fmt::format("{}{} for {}", shown(half), half == kNever ? "" : fmt::format(" to {}", shown(nine_in_ten)),
+                                fmt::join(of_needs, ", ")));
+  }
   return fmt::format(
       "{} motors are undecided: after so few {}, the share of motors over a limit, or short of the demand, may lie on either side of a "
       "threshold. {}.",

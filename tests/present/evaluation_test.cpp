@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "base/binomial_bound.h"
@@ -250,8 +251,8 @@ TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
       rests.push_back(each.words);
     }
   }
-  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m, so that"), HasSubstr("13 s before 60 s of play"),
-                                                HasSubstr("more than 60 min at 3 of 4 moments of the duty before 5 min of play"))));
+  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("hot m, which is"), HasSubstr("13 s of rest suffice before 60 s of play"),
+                                                HasSubstr("Before 5 min of play, 60 min of rest do not suffice at 3 of 4 moments"))));
 }
 
 TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limit_without_current) {
@@ -312,9 +313,59 @@ TEST(EvaluationDocument, has_one_note_for_all_undecided_motors) {
     EXPECT_THAT(notes.front(), HasSubstr("probability of 50 %"));
     for (std::size_t i = 0; count > 1 && i < count; ++i) {
       const select::DecidingSamples deciding = select::deciding_samples(motors.at(i));
-      EXPECT_THAT(notes.front(), HasSubstr(motors.at(i).motor_id + " " + std::to_string(*deciding.half) + " to "));
+      EXPECT_THAT(notes.front(), testing::ContainsRegex(std::to_string(*deciding.half) + " to [a-z0-9 ]+ for " + motors.at(i).motor_id));
     }
     EXPECT_FALSE(evaluation_json(answer).at("motors").at(0).at("decided").get<bool>());
+  }
+}
+
+// A sentence per motor would fill a screen when the whole database is compared.
+TEST(EvaluationDocument, undecided_motors_with_equal_needs_stand_together) {
+  const std::vector<select::MotorEvaluation> motors{undecided("a", 3), undecided("b", 1), undecided("c", 3), undecided("d", 1)};
+  const std::vector<Note> notes = evaluation_document(answer_with(motors, "division_a_match")).notes;
+  EXPECT_EQ(std::ranges::count_if(notes, [](const Note& each) {
+              return each.words.find(" for b, d; ") != std::string::npos && each.words.ends_with(" for a, c.");
+            }),
+            1);
+}
+
+// A program that reads the JSON must be able to reproduce the ranking, whichever temperature it rests on.
+TEST(EvaluationJson, its_keys_give_the_order_and_the_margins_of_the_table) {
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> peak_C(40.0, 160.0);
+  for (const int games : {0, 75}) {
+    std::vector<select::MotorEvaluation> motors;
+    for (int i = 0; i < 40; ++i) {
+      select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 600);
+      motor.motor_id = std::to_string(i);
+      motor.games = games;
+      motor.verdict = static_cast<select::Verdict>(i % 4);
+      motor.winding_limit_C = 155.0;
+      motor.winding_peak_C = {.nominal = peak_C(engine), .p05 = 40.0, .p50 = 65.0, .p95 = peak_C(engine)};
+      motor.margin_K = motor.winding_limit_C - motor.winding_peak_C.nominal;
+      if (i % 3 == 0) {
+        motor.stator_limit_C = 110.0;
+        motor.stator_peak_C = {.nominal = peak_C(engine), .p05 = 40.0, .p50 = 65.0, .p95 = peak_C(engine)};
+      }
+      motors.push_back(motor);
+    }
+    select::sort_by_verdict(motors);
+    simulate::EvaluationAnswer answer = answer_with(motors, "division_a_match");
+    answer.draw_count = static_cast<std::size_t>(games);
+    std::vector<Json> of_json = evaluation_json(answer).at("motors");
+    std::ranges::reverse(of_json);
+    const std::vector<std::string> verdicts{"pass", "marginal", "fail", "infeasible"};
+    std::ranges::sort(of_json, {}, [&](const Json& each) {
+      return std::pair(std::ranges::find(verdicts, each.at("verdict").get<std::string>()), -each.at("ranking_margin_K").get<double>());
+    });
+    const Table table = evaluation_document(answer).tables.front();
+    const auto margin =
+        static_cast<std::size_t>(std::ranges::find(table.columns, "margin", &Column::name) - table.columns.begin());
+    ASSERT_EQ(table.rows.size(), of_json.size());
+    for (std::size_t i = 0; i < of_json.size(); ++i) {
+      EXPECT_EQ(table.rows[i][1].words, of_json[i].at("id").get<std::string>());
+      EXPECT_NEAR(std::stod(table.rows[i][margin].words), of_json[i].at("ranking_margin_K").get<double>(), 0.51);
+    }
   }
 }
 
