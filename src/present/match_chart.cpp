@@ -11,9 +11,6 @@
 namespace heatsoak::present {
 namespace {
 
-/// Black: the colours before it belong to the windings, and the next ones resemble those of windings 1 and 2.
-constexpr int kStatorColor = 5;
-
 std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const std::function<double(const simulate::MatchRow&)>& of) {
   std::vector<double> values;
   for (const simulate::MatchRow& row : rows) {
@@ -22,28 +19,34 @@ std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const st
   return values;
 }
 
-/// Returns the panels for one planner: the windings of all wheels, then the motor of the hottest one, the robot and the battery.
+report::ChartLevel limit_level(double limit_C) { return {fmt::format("limit {:.0f} °C", limit_C), limit_C, true}; }
+
+/// Returns the panels for one planner: windings and stators of all wheels, then the motor of the hottest one, the robot and the battery.
 std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, const simulate::DrivenMatch& driven) {
   const auto hottest = static_cast<std::size_t>(driven.run.score.hottest_wheel);
   const std::vector<double> minutes = column(driven.rows, [](const simulate::MatchRow& row) { return row.time_s / 60.0; });
   const auto curve = [&](std::string name, int color, const std::function<double(const simulate::MatchRow&)>& of) {
     return report::ChartCurve{std::move(name), minutes, column(driven.rows, of), color, false};
   };
-  report::ChartPanel heat{.title = "Windings and stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  report::ChartPanel winding{.title = "Winding", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
+  report::ChartPanel stator{.title = "Stator", .y_label = "temperature / °C", .curves = {}, .bands = {}, .levels = {}};
   for (std::size_t i = 0; i < match.robot.wheels.axis_rad.size(); ++i) {
-    heat.curves.push_back(
-        curve(fmt::format("winding {}", i + 1), static_cast<int>(i), [i](const simulate::MatchRow& row) { return row.winding_peak_C[i]; }));
+    const int color = static_cast<int>(i);
+    winding.curves.push_back(
+        curve(fmt::format("wheel {}", i + 1), color, [i](const simulate::MatchRow& row) { return row.winding_peak_C[i]; }));
+    stator.curves.push_back(curve("", color, [i](const simulate::MatchRow& row) { return row.stator_C[i]; }));
   }
-  heat.curves.push_back(
-      curve(fmt::format("stator {}", hottest + 1), kStatorColor, [&](const simulate::MatchRow& row) { return row.stator_C[hottest]; }));
-  heat.levels.push_back({fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C, true});
+  winding.levels.push_back(limit_level(match.motor.nominal.winding_limit_C));
+  if (match.motor.nominal.stator_limit_C) {
+    stator.levels.push_back(limit_level(*match.motor.nominal.stator_limit_C));
+  }
   const auto single = [](std::string title, std::string label, report::ChartCurve one) {
     return report::ChartPanel{
         .title = std::move(title), .y_label = std::move(label), .curves = {std::move(one)}, .bands = {}, .levels = {}};
   };
   const int color = static_cast<int>(hottest);
-  return {std::move(heat),
-          single(fmt::format("Motor {}", hottest + 1), "current, rms of 2 s / A",
+  return {std::move(winding), std::move(stator),
+          single(fmt::format("Motor of wheel {}", hottest + 1), "current, rms of 2 s / A",
                  curve("", color, [&](const simulate::MatchRow& row) { return std::abs(row.current_A[hottest]); })),
           single("Robot", "speed / m/s",
                  curve("", 5, [](const simulate::MatchRow& row) { return std::hypot(row.velocity.x_m_per_s, row.velocity.y_m_per_s); })),
@@ -77,8 +80,7 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
     panels[2].curves.push_back(
         {"", minutes, column(driven.rows, [](const simulate::MatchRow& row) { return 1e3 * row.tracking_error_m; }), color, false});
   }
-  panels[0].levels.push_back(
-      {fmt::format("limit {:.0f} °C", match.motor.nominal.winding_limit_C), match.motor.nominal.winding_limit_C, true});
+  panels[0].levels.push_back(limit_level(match.motor.nominal.winding_limit_C));
   return panels;
 }
 

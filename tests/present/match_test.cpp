@@ -114,15 +114,25 @@ TEST(MatchAnswer, no_row_leans_on_the_row_above) {
   }
 }
 
-TEST(MatchChart, gives_the_stator_a_colour_that_no_winding_has) {
+// As in the picture of `evaluate`: the stator changes by far less, so it has axes of its own, below the winding.
+TEST(MatchChart, has_the_winding_above_the_stator_with_one_colour_per_wheel) {
   simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5), {});
   match.runs.resize(1);
   match.runs.front().rows.resize(2);
-  const report::ChartPanel heat = match_chart(match).panels.front();
-  ASSERT_EQ(heat.curves.size(), match.robot.wheels.axis_rad.size() + 1);
+  match.motor.nominal.stator_limit_C = 90.0;
+  const std::vector<report::ChartPanel> panels = match_chart(match).panels;
+  EXPECT_EQ(panels[0].title, "Winding");
+  EXPECT_EQ(panels[1].title, "Stator");
+  ASSERT_EQ(panels[1].curves.size(), panels[0].curves.size());
   std::set<int> colors;
-  std::ranges::transform(heat.curves, std::inserter(colors, colors.end()), &report::ChartCurve::color_index);
-  EXPECT_EQ(colors.size(), heat.curves.size());
+  for (std::size_t i = 0; i < panels[0].curves.size(); ++i) {
+    EXPECT_NE(panels[0].curves[i].name, "");
+    EXPECT_EQ(panels[1].curves[i].color_index, panels[0].curves[i].color_index);
+    colors.insert(panels[0].curves[i].color_index);
+  }
+  EXPECT_EQ(colors.size(), match.robot.wheels.axis_rad.size());
+  EXPECT_EQ(panels[0].levels.front().y, match.motor.nominal.winding_limit_C);
+  EXPECT_EQ(panels[1].levels.front().y, 90.0);
 }
 
 TEST(VerdictChart, draws_one_line_for_a_load_that_does_not_repeat) {
