@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<RobotParameterSpec, 29> kSpecs{{
     {"body",
      {"yaw_inertia", "kg m2", base::Range::between(1e-5, 200.0),
-      "moment of inertia about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
+      "moment of inertia of robot and wheels about the vertical axis through the centre of gravity; check the unit, g cm2 or kg m2"},
      [](auto& robot) -> decltype(auto) { return (robot.body.yaw_inertia_kg_m2); }},
     {"body",
      {"center_of_gravity_height", "m", base::Range::between(0.0, 2.0), "height of the centre of gravity above the ground"},
@@ -63,10 +63,10 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{{
      {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip speed at which 0.71 of the largest rolling force is used"},
      [](auto& robot) -> decltype(auto) { return (robot.traction.slip_speed_m_per_s); }},
     {"drive",
-     {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with one motor"},
+     {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with the winding of one motor"},
      [](auto& robot) -> decltype(auto) { return (robot.drive.driver_resistance_ohm); }},
     {"drive",
-     {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current"},
+     {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current: gate drive, logic, switching"},
      [](auto& robot) -> decltype(auto) { return (robot.drive.driver_standby_W); }},
     {"drive",
      {"control_rate", "Hz", base::Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
@@ -199,7 +199,6 @@ void read_friction(input::Reader& top, Robot& robot) {
   friction->finish();
 }
 
-/// Measured speed of a wheel divided by its speed without slip.
 constexpr base::ParameterSpec kSlipFactor{"slip_factors", "", base::Range::between(0.9, 1.15),
                                           "measured speed of each wheel divided by its speed without slip, wheel 1 first"};
 
@@ -259,7 +258,7 @@ void read_wheels(const input::Value& root, input::Reader& top, Robot& robot, bas
                                                  input::Need::required)
                                       .value_or(1.0);
   robot.wheels.axis_rad =
-      wheels->quantities({"axis_angles", "rad", base::Range::any(), "angles of the wheels' axes"}, input::Need::required);
+      wheels->quantities({"axis_angles", "rad", base::Range::any(), "direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first"}, input::Need::required);
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
@@ -283,7 +282,7 @@ void read_drive(input::Reader& top, Robot& robot) {
                      input::Need::optional)
           .value_or(1.0);
   robot.drive.voltage_limit_V =
-      drive->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest command to one motor"}, input::Need::optional)
+      drive->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest voltage that the driver can apply to one motor"}, input::Need::optional)
           .value_or(robot.drive.voltage_limit_V);
   robot.drive.current_limit_A =
       drive

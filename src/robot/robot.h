@@ -23,28 +23,29 @@ namespace heatsoak::robot {
 /// relative to R·I², with K_t per peak ampere 0.907 of the one per DC ampere.
 enum class Commutation { block, sinusoidal };
 
-// The tables of a robot file. A value is empty if the file does not give it; simulations of motion need most of them, prescribed duties
-// do not.
+// The tables of a robot file. The meaning, unit and range of each value stand in its ParameterSpec in robot.cpp, and only there. Comments
+// here state only conventions of the program. A value is empty if the file does not give it; simulations of motion need most of them,
+// prescribed duties do not.
 
 struct RobotWheels {
   double radius_m = 0.0;
-  double contact_radius_m = 0.0;             ///< distance from the robot's axis to the wheels' contact points
-  std::vector<double> axis_rad;              ///< direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first
-  std::vector<double> slip_factor;           ///< per wheel: measured speed divided by the speed without slip; empty: not measured
-  std::optional<double> inertia_kg_m2 = {};  ///< one wheel about its axle, without the motor's rotor
+  double contact_radius_m = 0.0;
+  std::vector<double> axis_rad;     ///< one per wheel
+  std::vector<double> slip_factor;  ///< one per wheel; no factors: not measured
+  std::optional<double> inertia_kg_m2 = {};
 };
 
 struct RobotDrive {
-  std::string motor;        ///< id of the motor that the robot is built with
-  double gear_ratio = 1.0;  ///< motor turns per wheel turn
+  std::string motor;  ///< id of the motor that the robot is built with
+  double gear_ratio = 1.0;
   double gear_efficiency = 1.0;
-  double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< limit of the driver's command, per motor; infinite: none
-  double current_limit_A = std::numeric_limits<double>::infinity();  ///< equivalent DC current, per motor; infinite: none
+  double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< infinite: none
+  double current_limit_A = std::numeric_limits<double>::infinity();  ///< infinite: none
   Commutation commutation = Commutation::block;
-  std::optional<double> driver_resistance_ohm = {};  ///< switches and traces of one motor, in series with the winding
-  std::optional<double> driver_standby_W = {};       ///< per motor: gate drive, logic, switching
-  std::optional<double> control_rate_Hz = {};        ///< rate of the firmware's commands to the motors
-  std::optional<double> command_rate_Hz = {};        ///< rate of the team computer's commands to the robot
+  std::optional<double> driver_resistance_ohm = {};
+  std::optional<double> driver_standby_W = {};
+  std::optional<double> control_rate_Hz = {};
+  std::optional<double> command_rate_Hz = {};
 };
 
 struct RobotBattery {
@@ -56,10 +57,10 @@ struct RobotBattery {
 };
 
 struct RobotBody {
-  std::optional<double> yaw_inertia_kg_m2 = {};  ///< about the vertical axis through the centre of gravity, wheels included
+  std::optional<double> yaw_inertia_kg_m2 = {};
   std::optional<double> center_of_gravity_height_m = {};
-  std::optional<double> center_of_gravity_x_m = {};  ///< ahead of the robot's axis; 0 if empty
-  std::optional<double> center_of_gravity_y_m = {};  ///< left of the robot's axis; 0 if empty
+  std::optional<double> center_of_gravity_x_m = {};  ///< 0 if empty
+  std::optional<double> center_of_gravity_y_m = {};  ///< 0 if empty
 };
 
 /// Measured friction of one wheel over the direction of travel; friction.h has the formula.
@@ -72,25 +73,25 @@ struct HeadingWheel {
 /// Measured friction curve over the direction of travel; friction.h has its formula.
 struct RobotHeadingFriction {
   std::optional<double> constant_Nm = {};  ///< for all wheels; empty if each wheel has its own
-  std::optional<double> sine_Nm = {};
+  std::optional<double> sine_Nm = {};      ///< as constant_Nm
   std::optional<double> double_angle_Nm = {};  ///< 0 if empty
   std::optional<double> rotation_Nm = {};      ///< equals wheel_torque_Nm if empty
-  std::vector<double> double_angle_phase_rad;  ///< per wheel; empty without the double-angle term
+  std::vector<double> double_angle_phase_rad;  ///< one per wheel; empty without the double-angle term
   std::vector<HeadingWheel> wheels;            ///< one per wheel, or none
 };
 
 struct RobotFriction {
-  std::optional<double> wheel_torque_Nm = {};  ///< at the wheel, without the motor's own drag
+  std::optional<double> wheel_torque_Nm = {};
   std::optional<double> wheel_damping_Nm_s_per_rad = {};
-  std::optional<double> roller_drag_ratio = {};   ///< drag force along the axle per normal force
-  std::optional<double> rolling_efficiency = {};  ///< share of the wheel's torque that reaches the ground; 1 if empty
+  std::optional<double> roller_drag_ratio = {};
+  std::optional<double> rolling_efficiency = {};  ///< 1 if empty
   RobotHeadingFriction heading;
   bool is_assumed = false;  ///< set by with_assumed_friction(); the file states none
 };
 
 struct RobotTraction {
-  std::optional<double> coefficient_ratio = {};   ///< largest rolling force per normal force
-  std::optional<double> slip_speed_m_per_s = {};  ///< slip at which 0.71 of the largest rolling force is used
+  std::optional<double> coefficient_ratio = {};
+  std::optional<double> slip_speed_m_per_s = {};
 };
 
 /// Limits of the team's planner.
