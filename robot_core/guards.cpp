@@ -12,7 +12,7 @@ constexpr float kKnown_share = 0.8F;
 
 int periods_per_guard_step(const Config& config) { return static_cast<int>(config.guard->period_s / config.period_s + 0.5F); }
 
-/// Highest temperature of the neighbouring motors, without their windings.
+/// Highest temperature of the other wheels' motors, without their windings.
 float hottest_neighbour_C(const Config& config, const State& state, int of) {
   float hottest_C = config.guard->coldest_ambient_C;
   for (int i = 0; i < config.wheel_count; ++i) {

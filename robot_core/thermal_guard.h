@@ -19,7 +19,7 @@ namespace robot_core {
   SIGNAL(speed_rad_per_s)         /* speed of the motor's shaft, signed */                                           \
   SIGNAL(ambient_C)               /* air around the motor */                                                         \
   SIGNAL(vehicle_speed_m_per_s)   /* speed of the robot through the air */                                           \
-  SIGNAL(neighbour_C)             /* temperature of the motor next to this one; the core uses the hottest one */     \
+  SIGNAL(neighbour_C)             /* temperature of the neighbouring motor, of several the hottest */                \
   SIGNAL(age_h)                   /* operating hours of the motor */                                                 \
   SIGNAL(acceleration_rad_per_s2) /* magnitude of dω/dt of the motor's shaft, mean over the guard period */
 

@@ -44,7 +44,7 @@ HEATSOAK_QUANTITY(ambient, ambient_C, 25.0,
 HEATSOAK_QUANTITY(resistive_headroom, resistive_headroom_V, std::numeric_limits<double>::infinity(),
     .unit = "V", .usual = std::numeric_limits<double>::infinity(), .averaging = AveragingRule::limit)
 
-// Driver and leads: they take part of that voltage, but do not heat the motor.
+// Resistance of driver and leads in series with the winding. It reduces the voltage at the winding; its heat does not reach the motor.
 HEATSOAK_QUANTITY(series_resistance, series_resistance_ohm, 0.0,
     .unit = "ohm")
 
@@ -81,14 +81,15 @@ HEATSOAK_SIGNAL(vehicle_speed, vehicle_speed_m_per_s, 0.0,
                               .without_power = WithoutPower::zero,
                               .unmeasured = "the robot's speed through the air, which the core does not know: it uses the speed with the most heating, still air if wind cools"})
 
-// Temperature of the neighbouring motor.
+// Temperature of the neighbouring motor. Of several, logs and simulations have the mean, and the guard in the firmware the hottest, so that
+// it never underestimates their heat.
 HEATSOAK_SIGNAL(neighbour_temperature, neighbour_C, 25.0,
     .unit = "degC", .usual = 90.0, .is_optional = true,
-    .column = "neighbour_C", .from = FromColumn::value, .column_kind = QuantityKind::surroundings, .column_meaning = "temperature of another motor close by", .lacking = "temperature of the neighbour",
+    .column = "neighbour_C", .from = FromColumn::value, .column_kind = QuantityKind::surroundings, .column_meaning = "temperature of the neighbouring motor, of several their mean", .lacking = "temperature of the neighbour",
     .unstated = {.consequence = "is left out", .quantity = "the neighbour's temperature"},
-    .firmware = FirmwareInput{.field = "neighbour_C", .meaning = "temperature of the motor next to this one; the winding's limit if it is not known",
+    .firmware = FirmwareInput{.field = "neighbour_C", .meaning = "temperature of the neighbouring motor, of several the hottest; the winding's limit if it is not known",
                               .without_power = WithoutPower::winding_limit,
-                              .unmeasured = "the motors beside it: the core uses the hottest of the other wheels' guards"})
+                              .unmeasured = "the neighbouring motors: the core uses the hottest of the other wheels' guards"})
 
 // 1 if the machine may turn at a speed that was not logged, else 0.
 HEATSOAK_QUANTITY(unlogged_speed_share, unlogged_speed_share, 0.0,

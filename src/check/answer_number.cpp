@@ -18,13 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Groups with one member for each signal. The members' names are those of signals, whose unit is not that of the numbers inside.
+/// Groups that have one member per signal, such as error.winding_C. The unit in the name of such a member is that of the signal. The
+/// numbers inside the member have other units.
 constexpr std::array<std::string_view, 7> kBySignal{"coverage_90",          "error",          "error_before",  "holdout_error",
                                                     "holdout_error_before", "left_out_error", "residual_tests"};
 
 constexpr std::string_view kInterval = "ci95";
 
-/// List of the keys beside it whose null means that the event never happens.
+/// Key of a list in a JSON object. A null is a time that never comes if the list has its key.
 constexpr const char* kNever = "never";
 
 struct Child {
@@ -91,7 +92,7 @@ std::optional<std::string> unit_beside(const Json& group, const std::string& key
   return std::nullopt;
 }
 
-/// Returns the place of the signal's name among the keys below a group of kBySignal: the first one that ends in a unit.
+/// Returns the index of the key that names a signal: the first key below a group of kBySignal that ends in a unit. Empty if there is none.
 std::optional<std::size_t> place_of_signal(const std::vector<std::string>& keys) {
   const auto group =
       std::ranges::find_if(keys, [](const std::string& key) { return std::ranges::find(kBySignal, key) != kBySignal.end(); });
@@ -99,8 +100,8 @@ std::optional<std::size_t> place_of_signal(const std::vector<std::string>& keys)
   return signal == keys.end() ? std::nullopt : std::optional(static_cast<std::size_t>(signal - keys.begin()));
 }
 
-/// Returns the unit of the innermost key that states one: of its name, or beside it. Objects in a list are things of their own, which do
-/// not have the unit of the list.
+/// Returns the unit of the innermost key that states one, in its own name or in a key beside it. The search ends at an object in a list,
+/// because the name of the list does not state the unit of the object's numbers. It also ends at the name of a signal.
 std::string unit_at(const Trail& trail) {
   const std::optional<std::size_t> signal = place_of_signal(trail.keys);
   for (std::size_t i = trail.keys.size(); i-- > 0;) {

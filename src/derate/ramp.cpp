@@ -23,9 +23,10 @@ std::vector<double> places_up_to(std::vector<double> axis, double most) {
 
 double hottest_C(const Derating& derating) { return std::floor(derating.rules.limits.winding_C); }
 
-/// Returns the temperatures at which it suffices to compare bound and ramp, ascending. Over the stator the bound is a minimum of concave
-/// curves between the table's breakpoints, because the heat is linear there, and the ramp is linear. Above that axis the bound is 0. Over
-/// the winding the resistance bends the curves, so that the places lie close together.
+/// Returns the temperatures at which the ramp is compared with its bound, ascending.
+/// Stator: the table's breakpoints suffice. Between two of them the bound is concave and the ramp is linear, so their smallest difference
+/// is at a breakpoint. A point just above the axis has the bound 0.
+/// Winding: the bound is not concave, because the resistance depends on the winding temperature. The points are 0.1 K apart.
 std::vector<double> corners_C(const Derating& derating, RampSignal signal) {
   const bool is_stator = signal == RampSignal::stator;
   std::vector<double> corners = is_stator ? derating.table.stator_C : derating.table.winding_C;
@@ -52,7 +53,7 @@ std::vector<BoundPoint> bound_points(const Derating& derating, RampSignal signal
   for (const double place_C : corners_C(derating, signal)) {
     points.push_back({place_C, ramp_bound_A(derating, signal, place_C)});
   }
-  // Between two places of the winding's axis a curve is steadily rising or falling, so the lower end is a bound.
+  // Between two points of the winding's axis the bound is monotonic, so the smaller of both currents is a lower bound.
   for (std::size_t i = 0; signal == RampSignal::winding && i + 1 < points.size(); ++i) {
     points[i].current_A = std::min(points[i].current_A, points[i + 1].current_A);
   }

@@ -143,7 +143,7 @@ void set_limits(const robot::Robot& robot, const robot::BodyConfig& body, robot_
   config.traction_ratio = single(std::sqrt(std::max(0.0, mu * mu - c * c)));
 }
 
-/// Completed with its check sum, or a Failure where the core would refuse it.
+/// Returns the configuration with its check sum. Throws Failure (bad_input) if the drive core would refuse it.
 robot_core::Config finished(robot_core::Config config) {
   robot_core::complete(config);
   if (!robot_core::is_possible(config)) {
@@ -155,7 +155,7 @@ robot_core::Config finished(robot_core::Config config) {
   return config;
 }
 
-/// Largest current over the directions of travel and the wheels, and the motor's speed at the beginning of the stop.
+/// Full stop of one wheel: its largest current, and the motor's speed at its beginning.
 struct Stop {
   double current_A = 0.0;
   double speed_rad_per_s = 0.0;

@@ -94,7 +94,7 @@ TEST(CoreNotes, EveryKindHasItsSentence) {
        "wind, fan depends on the robot's speed through the air, which the core does not know: it uses the speed with the most heating, "
        "still air if wind cools"},
       {InputNotMeasured{derate::observed::neighbour, {"next"}},
-       "next depends on the motors beside it: the core uses the hottest of the other wheels' guards"},
+       "next depends on the neighbouring motors: the core uses the hottest of the other wheels' guards"},
       {InputNotMeasured{derate::observed::age, {}},
        "the motor's thermal law depends on operating hours, which the core does not know: it uses the age with the most "
        "heating"},

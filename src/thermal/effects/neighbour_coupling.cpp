@@ -22,8 +22,8 @@ EffectType neighbour_coupling() {
   return {
       .name = {},
       .summary =
-          "Heat from or to the motor next to this one, through the chassis or the air between. If the neighbour's temperature is unknown, "
-          "no heat is counted.",
+          "Heat from or to the neighbouring motor, through the chassis or the air between. If its temperature is unknown, no heat is "
+          "counted.",
       .equation = "P_node→surroundings = G·(T_node − T_neighbour)",
       .reference = "Newton's law of cooling; the neighbour's temperature is given and is part of the surroundings",
       .nodes = {{"node", "stator"}, {"surroundings", "ambient", {}, true}},
