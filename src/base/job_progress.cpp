@@ -30,6 +30,28 @@ double quantile_s(const std::vector<Outcome>& ascending, double probability) {
   return ascending.back().remaining_s;
 }
 
+/// Returns the geometric middle of the most probable times whose ends differ by at most a factor of four.
+double likely_remaining_s(const std::vector<Outcome>& ascending) {
+  constexpr double kWidest_ratio = 4.0;
+  constexpr double kShortest_s = 1.0;  // shorter times need no distinction
+  double best = 0.0;
+  double likely_s = 0.0;
+  for (std::size_t i = 0; i < ascending.size(); ++i) {
+    const double from_s = std::max(kShortest_s, ascending[i].remaining_s);
+    double to_s = from_s;
+    double probability = 0.0;
+    for (std::size_t k = i; k < ascending.size() && ascending[k].remaining_s <= kWidest_ratio * from_s; ++k) {
+      probability += ascending[k].probability;
+      to_s = std::max(from_s, ascending[k].remaining_s);
+    }
+    if (probability > best) {
+      best = probability;
+      likely_s = std::sqrt(from_s * to_s);
+    }
+  }
+  return likely_s;
+}
+
 }  // namespace
 
 struct JobProgress::State {
@@ -187,6 +209,7 @@ JobEstimate JobProgress::estimate() const {
   const std::vector<Outcome> outcomes = state.outcomes(time_s);
   found.shortest_s = quantile_s(outcomes, kImprobable);
   found.longest_s = quantile_s(outcomes, 1.0 - kImprobable);
+  found.likely_s = likely_remaining_s(outcomes);
   const double mean_s = std::accumulate(outcomes.begin(), outcomes.end(), 0.0,
                                         [](double sum_s, const Outcome& each) { return sum_s + each.probability * each.remaining_s; });
   found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + mean_s) : 0.0;

@@ -25,6 +25,8 @@ struct JobEstimate {
   /// Remaining time of the whole job: 10 % and 90 % quantiles, which differ if phases may be left out. Empty before the first phase.
   std::optional<double> shortest_s = {};
   std::optional<double> longest_s = {};
+  /// Remaining time that is most probably within a factor of two of the true one. Empty before the first phase.
+  std::optional<double> likely_s = {};
   bool is_open = false;  ///< more phases of unknown length may follow, so that there is no longest time
 };
 

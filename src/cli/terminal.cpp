@@ -66,22 +66,28 @@ std::string time_words(double time_s) {
   return time_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(time_s / 60.0)) : fmt::format("{:.0f} s", std::ceil(time_s));
 }
 
-/// Formats "12 s", "12 s to 5 min", or "at least 12 s". The single value is within a factor of two of both ends of the range.
+/// Formats "12 s" if that is within a factor of two of both ends of the range. Otherwise adds the end that is further away to the likely
+/// time: "about 40 s left, 3 min at most". If more phases may follow: "at least 12 s left".
 std::string remaining_words(const base::JobEstimate& estimate) {
   constexpr double kWide_ratio = 4.0;
   const double shortest_s = std::max(1.0, estimate.shortest_s.value_or(0.0));
   const double longest_s = std::max(shortest_s, estimate.longest_s.value_or(0.0));
   if (estimate.is_open) {
-    return fmt::format("at least {}", time_words(shortest_s));
+    return fmt::format("at least {} left", time_words(shortest_s));
   }
-  return longest_s > kWide_ratio * shortest_s ? fmt::format("{} to {}", time_words(shortest_s), time_words(longest_s))
-                                              : time_words(std::sqrt(shortest_s * longest_s));
+  if (longest_s <= kWide_ratio * shortest_s) {
+    return fmt::format("{} left", time_words(std::sqrt(shortest_s * longest_s)));
+  }
+  const double likely_s = std::clamp(estimate.likely_s.value_or(shortest_s), shortest_s, longest_s);
+  const bool is_end_later = longest_s / likely_s > likely_s / shortest_s;
+  return fmt::format("about {} left, {} at {}", time_words(likely_s), time_words(is_end_later ? longest_s : shortest_s),
+                     is_end_later ? "most" : "least");
 }
 
 /// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below.
 std::string words_of(const base::JobEstimate& estimate, double& most_share) {
   most_share = std::max(most_share, std::min(estimate.done_share, 0.99));
-  return fmt::format("{}: {:.0f} %, {} left", estimate.what, 100.0 * most_share, remaining_words(estimate));
+  return fmt::format("{}: {:.0f} %, {}", estimate.what, 100.0 * most_share, remaining_words(estimate));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "base/binomial_bound.h"
@@ -49,6 +50,59 @@ double distance_sd(const Spread95& peak_C, double limit_C, double ambient_C) {
   return std::log((limit_C - ambient_C) / median_K) / sd;
 }
 
+/// Numbers of draws over a limit, of all draws, with which the interval of the share covers a threshold: [first, end).
+struct OpenCounts {
+  int first = 0;
+  int end = 0;
+};
+OpenCounts open_counts(double threshold_ratio, int draws, bool is_drawn) {
+  const auto interval = [&](int over) {
+    return base::share_interval(static_cast<double>(over) / draws, draws, error_share(draws, is_drawn));
+  };
+  const int near = static_cast<int>(threshold_ratio * draws);
+  const std::optional<int> least_above = first_that_holds(near - 1, draws, [&](int over) { return interval(over).low > threshold_ratio; });
+  const std::optional<int> least_open = first_that_holds(-1, near + 1, [&](int over) { return interval(over).high > threshold_ratio; });
+  const int end = least_above.value_or(draws + 1);
+  return {std::min(least_open.value_or(end), end), end};
+}
+
+/// Returns the probability that `draws` draws in total have [first, end) of them over the limit, after `seen` of `seen_draws`. The share is
+/// one of `quantiles_ratio`.
+double probability_of_counts(const OpenCounts& counts, std::span<const double> quantiles_ratio, double seen, int seen_draws, int draws) {
+  const double more = draws - seen_draws;
+  const auto below = [&](double over, double share_ratio) {
+    const double later = over - 1.0 - seen;
+    return later < 0.0 ? 0.0 : later >= more ? 1.0 : boost::math::cdf(boost::math::binomial_distribution<>(more, share_ratio), later);
+  };
+  double sum = 0.0;
+  for (const double share_ratio : quantiles_ratio) {
+    sum += std::max(0.0, below(counts.end, share_ratio) - below(counts.first, share_ratio));
+  }
+  return sum / static_cast<double>(quantiles_ratio.size());
+}
+
+/// Distribution of the share after `over` of `draws`, from Jeffreys' prior.
+template <std::size_t count>
+std::array<double, count> share_quantiles(double over, double draws) {
+  const boost::math::beta_distribution<> distribution(over + 0.5, draws - over + 0.5);
+  return equally_probable<count>([&](double of) { return boost::math::quantile(distribution, of); });
+}
+
+/// Returns the counts among `open` after which `most` draws decide with less than kLeastDecision_share. They surround the threshold.
+OpenCounts counts_not_worth(const OpenCounts& open, double threshold_ratio, int draws, int most) {
+  constexpr std::size_t kFewQuantiles = 24;
+  const OpenCounts open_then = open_counts(threshold_ratio, most, true);
+  const auto is_worth = [&](int over) {
+    return probability_of_counts(open_then, share_quantiles<kFewQuantiles>(over, draws), over, draws, most) <= 1.0 - kLeastDecision_share;
+  };
+  const int middle = std::clamp(static_cast<int>(std::lround(threshold_ratio * draws)), open.first, open.end - 1);
+  if (is_worth(middle)) {
+    return {middle, middle};
+  }
+  const int first = *first_that_holds(open.first - 1, middle, [&](int over) { return !is_worth(over); });
+  return {first, first_that_holds(middle, open.end, [&](int over) { return over == open.end || is_worth(over); }).value_or(open.end)};
+}
+
 }  // namespace
 
 std::vector<OpenThreshold> open_thresholds(const MotorEvaluation& motor, bool is_drawn) {
@@ -90,8 +144,7 @@ Prospect::Prospect(const MotorEvaluation& motor) : motor_id_(motor.motor_id), is
   }
   for (Share& share : kinds) {
     if (!share.thresholds_ratio.empty()) {
-      const boost::math::beta_distribution<> distribution(share.seen_count + 0.5, draws_ - share.seen_count + 0.5);
-      share.quantiles_ratio = equally_probable<kQuantiles>([&](double of) { return boost::math::quantile(distribution, of); });
+      share.quantiles_ratio = share_quantiles<kQuantiles>(share.seen_count, draws_);
       open_.push_back(std::move(share));
     }
   }
@@ -109,9 +162,7 @@ Prospect Prospect::of_few_games(const MotorEvaluation& few, double ambient_C) {
   }
   if (few.short_probability > 0.0) {
     const double count = *few.short_probability * few.games;
-    const boost::math::beta_distribution<> distribution(count + 0.5, few.games - count + 0.5);
-    prospect.open_.push_back({equally_probable<kQuantiles>([&](double of) { return boost::math::quantile(distribution, of); }),
-                              {kMajority, kMarginalProbability}});
+    prospect.open_.push_back({share_quantiles<kQuantiles>(count, few.games), {kMajority, kMarginalProbability}});
   }
   double near_sd = distance_sd(few.winding_peak_C, few.winding_limit_C, ambient_C);
   if (few.stator_limit_C) {
@@ -133,34 +184,14 @@ Prospect Prospect::of_few_games(const MotorEvaluation& few, double ambient_C) {
 
 int Prospect::per_draw() const { return is_drawn_ ? base::kLanes : 1; }
 
-/// Returns the probability that the interval of a share excludes the threshold after `draws` draws in total.
-double Prospect::leaves_probability(const Share& share, double threshold_ratio, int draws) const {
-  const auto interval = [&](int over) {
-    return base::share_interval(static_cast<double>(over) / draws, draws, error_share(draws, is_drawn_));
-  };
-  const int near = static_cast<int>(threshold_ratio * draws);
-  const std::optional<int> least_above = first_that_holds(near - 1, draws, [&](int over) { return interval(over).low > threshold_ratio; });
-  const std::optional<int> least_open = first_that_holds(-1, near + 1, [&](int over) { return interval(over).high > threshold_ratio; });
-  const double more = draws - draws_;
-  const auto at_most = [&](double over, double share_ratio) {
-    const double later = over - share.seen_count;
-    return later < 0.0 ? 0.0 : later >= more ? 1.0 : boost::math::cdf(boost::math::binomial_distribution<>(more, share_ratio), later);
-  };
-  double sum = 0.0;
-  for (const double share_ratio : share.quantiles_ratio) {
-    sum += least_open ? at_most(*least_open - 1.0, share_ratio) : 1.0;
-    sum += least_above ? 1.0 - at_most(*least_above - 1.0, share_ratio) : 0.0;
-  }
-  return sum / static_cast<double>(share.quantiles_ratio.size());
-}
-
 /// Both thresholds of one share depend on that share, so the less certain one counts.
 double Prospect::decided_by_draws(int draws) const {
   double all = 1.0;
   for (const Share& share : open_) {
     double least = 1.0;
     for (const double threshold_ratio : share.thresholds_ratio) {
-      least = std::min(least, leaves_probability(share, threshold_ratio, draws));
+      const OpenCounts open = open_counts(threshold_ratio, draws, is_drawn_);
+      least = std::min(least, 1.0 - probability_of_counts(open, share.quantiles_ratio, share.seen_count, draws_, draws));
     }
     all *= least;
   }
@@ -170,6 +201,31 @@ double Prospect::decided_by_draws(int draws) const {
 double Prospect::decided_probability(int samples) const {
   const int draws = (samples + per_draw() - 1) / per_draw();
   return open_.empty() ? 1.0 : draws <= draws_ ? 0.0 : decided_by_draws(draws);
+}
+
+double Prospect::ended_probability(int samples, int most) const {
+  const int draws = (samples + per_draw() - 1) / per_draw();
+  const int most_draws = most / per_draw();
+  if (!is_drawn_ || open_.empty() || draws <= draws_ || draws >= most_draws) {
+    return decided_probability(samples);
+  }
+  double none_goes_on = 1.0;
+  for (const Share& share : open_) {
+    double goes_on = 0.0;
+    for (const double threshold_ratio : share.thresholds_ratio) {
+      const OpenCounts open = open_counts(threshold_ratio, draws, true);
+      if (open.first == open.end) {
+        continue;
+      }
+      const OpenCounts hopeless = counts_not_worth(open, threshold_ratio, draws, most_draws);
+      const auto probability = [&](const OpenCounts& counts) {
+        return probability_of_counts(counts, share.quantiles_ratio, share.seen_count, draws_, draws);
+      };
+      goes_on = std::max(goes_on, probability(open) - probability(hopeless));
+    }
+    none_goes_on *= 1.0 - std::clamp(goes_on, 0.0, 1.0);
+  }
+  return none_goes_on;
 }
 
 double Prospect::pass_probability() const {

@@ -41,6 +41,10 @@ class Prospect {
   /// probability is that of deciding both; the shares are taken as independent.
   [[nodiscard]] double decided_probability(int samples) const;
 
+  /// Returns the probability that the rounds of evaluate_until_decided() end at `samples` samples at the latest: the verdict is decided then,
+  /// or `most` samples will probably not decide it (is_worth_another_round()). Without draws only a decision ends them.
+  [[nodiscard]] double ended_probability(int samples, int most) const;
+
   /// Returns the probability that the verdict will be pass.
   [[nodiscard]] double pass_probability() const;
 
@@ -58,7 +62,6 @@ class Prospect {
   };
 
   Prospect() = default;
-  [[nodiscard]] double leaves_probability(const Share& share, double threshold_ratio, int draws) const;
   [[nodiscard]] double decided_by_draws(int draws) const;
   [[nodiscard]] int per_draw() const;
 

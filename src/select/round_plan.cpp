@@ -102,11 +102,15 @@ void RoundPlan::expect(std::vector<base::JobPhase> certain, std::span<const Pros
   const bool is_drawn = duty_.shape_data->has_unknowns();
   // The prospects may be those of a part of the motors.
   const double scale = prospects.empty() ? 1.0 : static_cast<double>(motors_.size()) / static_cast<double>(prospects.size());
+  std::vector<double> ended(prospects.size());
+  std::ranges::transform(prospects, ended.begin(),
+                         [&](const Prospect& each) { return is_drawn && !is_worth_another_round(each, most_) ? 1.0 : 0.0; });
   for (int count = samples; count < most_;) {
     double none = 1.0;
     double open = 0.0;
-    for (const Prospect& each : prospects) {
-      const double is_open = is_drawn && !is_worth_another_round(each, most_) ? 0.0 : 1.0 - each.decided_probability(count);
+    for (std::size_t i = 0; i < prospects.size(); ++i) {
+      ended[i] = std::max(ended[i], prospects[i].ended_probability(count, most_));
+      const double is_open = 1.0 - ended[i];
       none *= std::pow(1.0 - is_open, scale);
       open += scale * is_open;
     }

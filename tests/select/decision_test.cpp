@@ -7,6 +7,7 @@
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -176,8 +177,10 @@ TEST(Prospect, another_round_is_worth_its_time_only_if_it_may_decide) {
   EXPECT_FALSE(is_worth_another_round(Prospect(of_games(0, 75)), most)) << "decided";
 }
 
-// The predicted probability that a later number of games decides is the share of evaluations that it decides.
-TEST(Prospect, decides_with_the_predicted_probability) {
+// The predicted probability that a later number of games decides is the share of evaluations that it decides; so is that of the end of the
+// rounds, which also end where further games would probably not decide.
+TEST(Prospect, decides_and_ends_with_the_predicted_probability) {
+  const int most = most_samples(true);
   constexpr int kGames = 75;
   constexpr int kTrials = 3000;
   for (const int over : {1, 3, 30}) {
@@ -186,20 +189,29 @@ TEST(Prospect, decides_with_the_predicted_probability) {
     const Prospect prospect(motor);
     EXPECT_EQ(prospect.decided_probability(motor.samples), 0.0);
     const boost::math::beta_distribution<> posterior(over + 0.5, kGames - over + 0.5);
-    for (const int games : {150, 600, 2400}) {
+    for (const int games : {150, 600, 1200, 2400}) {
       double decided = 0.0;
+      double ended = 0.0;
       double passes = 0.0;
+      std::map<int, bool> goes_on;  // by the games over the limit
       for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
         base::Random random(seed, 0);
         const double share = boost::math::quantile(posterior, random.uniform());
         const boost::math::binomial_distribution<> later(games - kGames, share);
         const int all = over + static_cast<int>(boost::math::quantile(later, random.uniform()));
-        decided += of_games(all, games).samples_needed ? 0.0 : 1.0;
+        const MotorEvaluation then = of_games(all, games);
+        decided += then.samples_needed ? 0.0 : 1.0;
+        const auto [found, is_new] = goes_on.try_emplace(all, false);
+        found->second = is_new ? then.samples < most && is_worth_another_round(Prospect(then), most) : found->second;
+        ended += found->second ? 0.0 : 1.0;
         passes += share <= kMarginalProbability ? 1.0 : 0.0;
       }
       const double predicted = prospect.decided_probability(8 * games);
       const double sd = std::sqrt(0.25 / kTrials);
       EXPECT_NEAR(decided / kTrials, predicted, 5.0 * sd) << over << " of " << kGames << ", then " << games;
+      if (games * 8 < most) {
+        EXPECT_NEAR(ended / kTrials, prospect.ended_probability(8 * games, most), 5.0 * sd + 0.01) << over << ", then " << games;
+      }
       EXPECT_NEAR(passes / kTrials, prospect.pass_probability(), 5.0 * sd) << over;
     }
   }
