@@ -17,6 +17,10 @@ constexpr double kErrors_sd = 2.0;     ///< printed uncertainty in standard erro
 constexpr double kLeastSaved_K = 0.5;  ///< smaller effects are not listed
 
 std::string shown_value(double value, std::string_view unit) {
+  constexpr double kShort_m = 0.1;
+  if (unit == "m" && value < kShort_m) {
+    return fmt::format("{} mm", base::significant(1e3 * value, 3));
+  }
   return unit.empty() ? base::significant(value, 3) : fmt::format("{} {}", base::significant(value, 3), unit);
 }
 

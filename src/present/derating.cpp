@@ -93,11 +93,11 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
 void add_power_off_and_friction(Document& document, const derate::Derating& derating) {
   std::vector<std::string> cases;
   for (const derate::PowerOffCase& each : derate::power_off_report(derating).cases) {
-    cases.push_back(fmt::format("{}: {:.1f} A", each.name, fmt::join(each.allowed_A, ", ")));
+    cases.push_back(fmt::format("{:.1f} A ({})", fmt::join(each.allowed_A, ", "), each.name));
   }
   document.add_note(Severity::background,
-                    fmt::format("Loss of power at the temperatures of continuous use. The guard saves and restores its state. Allowed "
-                                "current at standstill {:.0f} s after power-on: {}.",
+                    fmt::format("After a loss of power a guard that saves and restores its state allows at standstill, {:.0f} s after power-on: "
+                                "{}. The motor was as hot as continuous use permits.",
                                 fmt::join(derate::kPowerOffMoments_s, ", "), fmt::join(cases, "; ")));
   const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
   if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {

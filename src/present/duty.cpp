@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
@@ -32,14 +33,16 @@ Table role_table(const duty::RoleLoads& roles) {
   };
   for (std::size_t i = 0; i < duty::kPhaseNames.size(); ++i) {
     if (const double time_s = roles.back().phases[i].time_s; time_s > 0.0) {
-      add(duty::kPhaseNames[i], fmt::format("{:.0f}", time_s), [&](const duty::MatchLoad& load) {
+      std::string name(duty::kPhaseNames[i]);
+      std::ranges::replace(name, '_', ' ');
+      add(name, fmt::format("{:.0f}", time_s), [&](const duty::MatchLoad& load) {
         return share(duty::effort_Nm2_s(load.phases[i]) - load.phases[i].duel_torque_squared_Nm2_s, load);
       });
     }
   }
   const double most_Nm2_s = duty::most_effort_Nm2_s(roles);
   add("duels (pushing at stall)", "", [&](const duty::MatchLoad& load) { return share(duty::duel_effort_Nm2_s(load), load); });
-  add("  time in them", "", [](const duty::MatchLoad& load) { return fmt::format("{:.0f} s", duty::duel_s(load)); });
+  add("time in duels", "", [](const duty::MatchLoad& load) { return fmt::format("{:.0f} s", duty::duel_s(load)); });
   add("driven", "", [](const duty::MatchLoad& load) { return fmt::format("{:.0f} m", load.distance_m); });
   add("torque of a mean wheel, rms", "",
       [](const duty::MatchLoad& load) { return fmt::format("{:.1f} mN m", 1e3 * duty::torque_rms_Nm(load)); });

@@ -94,7 +94,9 @@ Table energy_table(const simulate::MatchSimulation& answer) {
   add_row(table, answer, "in all", "kJ",
           [](const simulate::DriveScore& score) { return fmt::format("{:.2f}", 1e-3 * score.energy.battery_J); });
   for (const EnergyPart& each : energy_parts()) {
-    add_row(table, answer, each.name, "%", [&](const simulate::DriveScore& score) {
+    std::string name(each.name);
+    std::ranges::replace(name, '_', ' ');
+    add_row(table, answer, name, "%", [&](const simulate::DriveScore& score) {
       return fmt::format("{:.1f}", 100.0 * score.energy.*each.value / score.energy.battery_J);
     });
   }
