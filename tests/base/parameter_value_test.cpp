@@ -13,24 +13,24 @@ namespace heatsoak::base {
 namespace {
 
 ParameterValue tolerance(double value, double share) {
-  ParameterValue figure;
-  figure.value = value;
-  figure.spread = Spread{Spread::Kind::tolerance, value * (1.0 - share), value * (1.0 + share), true};
-  return figure;
+  ParameterValue parameter;
+  parameter.value = value;
+  parameter.spread = Spread{Spread::Kind::tolerance, value * (1.0 - share), value * (1.0 + share), true};
+  return parameter;
 }
 ParameterValue range(double value, double low, double high, bool by_ratio) {
-  ParameterValue figure;
-  figure.value = value;
-  figure.spread = Spread{Spread::Kind::range, low, high, by_ratio};
-  return figure;
+  ParameterValue parameter;
+  parameter.value = value;
+  parameter.spread = Spread{Spread::Kind::range, low, high, by_ratio};
+  return parameter;
 }
 
 /// Returns the probability of a value below `bound`, from quantiles at evenly distributed probabilities.
-double share_below(const ParameterValue& figure, double bound) {
+double share_below(const ParameterValue& parameter, double bound) {
   constexpr int kCells = 20000;
   int below = 0;
   for (int i = 0; i < kCells; ++i) {
-    below += figure.quantile((i + 0.5) / kCells) < bound ? 1 : 0;
+    below += parameter.quantile((i + 0.5) / kCells) < bound ? 1 : 0;
   }
   return static_cast<double>(below) / kCells;
 }
@@ -40,38 +40,38 @@ const std::vector<ParameterValue> kParameterValues{
     range(25.0, 20.0, 32.0, false), range(0.0, -5.0, 3.0, false), range(2.0, 2.0, 3.0, true), range(2.0, 1.0, 2.0, true)};
 
 TEST(ParameterQuantile, without_spread_is_the_value) {
-  ParameterValue figure;
-  figure.value = 4.2;
+  ParameterValue parameter;
+  parameter.value = 4.2;
   for (const double uniform : {1e-12, 0.3, 0.5, 1.0 - 1e-12}) {
-    EXPECT_EQ(figure.quantile(uniform), 4.2);
+    EXPECT_EQ(parameter.quantile(uniform), 4.2);
   }
 }
 
 TEST(ParameterQuantile, median_is_the_value) {
-  for (const ParameterValue& figure : kParameterValues) {
-    EXPECT_NEAR(figure.quantile(0.5), figure.value, 1e-14 * std::abs(figure.value) + 1e-15);
+  for (const ParameterValue& parameter : kParameterValues) {
+    EXPECT_NEAR(parameter.quantile(0.5), parameter.value, 1e-14 * std::abs(parameter.value) + 1e-15);
   }
 }
 
 TEST(ParameterQuantile, never_leaves_the_bounds_and_reaches_them) {
-  for (const ParameterValue& figure : kParameterValues) {
-    const double width = figure.spread->high - figure.spread->low;
+  for (const ParameterValue& parameter : kParameterValues) {
+    const double width = parameter.spread->high - parameter.spread->low;
     Random random(1001, 0);
     for (int i = 0; i < 10000; ++i) {
-      const double value = figure.quantile(random.uniform());
-      EXPECT_GE(value, figure.spread->low - 1e-12 * width);
-      EXPECT_LE(value, figure.spread->high + 1e-12 * width);
+      const double value = parameter.quantile(random.uniform());
+      EXPECT_GE(value, parameter.spread->low - 1e-12 * width);
+      EXPECT_LE(value, parameter.spread->high + 1e-12 * width);
     }
-    EXPECT_NEAR(figure.quantile(1e-9), figure.spread->low, 1e-6 * width);
-    EXPECT_NEAR(figure.quantile(1.0 - 1e-9), figure.spread->high, 1e-6 * width);
+    EXPECT_NEAR(parameter.quantile(1e-9), parameter.spread->low, 1e-6 * width);
+    EXPECT_NEAR(parameter.quantile(1.0 - 1e-9), parameter.spread->high, 1e-6 * width);
   }
 }
 
 TEST(ParameterQuantile, rises) {
-  for (const ParameterValue& figure : kParameterValues) {
-    double before = figure.quantile(1e-6);
+  for (const ParameterValue& parameter : kParameterValues) {
+    double before = parameter.quantile(1e-6);
     for (double uniform = 0.001; uniform < 1.0; uniform += 0.001) {
-      const double value = figure.quantile(uniform);
+      const double value = parameter.quantile(uniform);
       EXPECT_GE(value, before);
       before = value;
     }
@@ -81,31 +81,31 @@ TEST(ParameterQuantile, rises) {
 // A normal distribution with 95 % within the tolerance has half of it as standard deviation. Truncated at two standard deviations, one
 // holds 0.6827/0.9545 = 71.52 % of the draws. Half a standard deviation holds 38.29/95.45 = 40.12 %.
 TEST(ParameterQuantile, tolerance_is_two_standard_deviations) {
-  const ParameterValue figure = tolerance(100.0, 0.1);
-  EXPECT_NEAR(share_below(figure, 105.0) - share_below(figure, 95.0), 0.7152, 2e-4);
-  EXPECT_NEAR(share_below(figure, 102.5) - share_below(figure, 97.5), 0.4012, 2e-4);
-  EXPECT_NEAR(share_below(figure, 100.0), 0.5, 1e-4);
+  const ParameterValue parameter = tolerance(100.0, 0.1);
+  EXPECT_NEAR(share_below(parameter, 105.0) - share_below(parameter, 95.0), 0.7152, 2e-4);
+  EXPECT_NEAR(share_below(parameter, 102.5) - share_below(parameter, 97.5), 0.4012, 2e-4);
+  EXPECT_NEAR(share_below(parameter, 100.0), 0.5, 1e-4);
 }
 
 TEST(ParameterQuantile, tolerance_is_symmetric) {
-  const ParameterValue figure = tolerance(100.0, 0.1);
+  const ParameterValue parameter = tolerance(100.0, 0.1);
   for (double uniform = 0.01; uniform < 0.5; uniform += 0.01) {
-    EXPECT_NEAR(figure.quantile(uniform) + figure.quantile(1.0 - uniform), 200.0, 1e-9);
+    EXPECT_NEAR(parameter.quantile(uniform) + parameter.quantile(1.0 - uniform), 200.0, 1e-9);
   }
 }
 
 TEST(ParameterQuantile, range_is_as_likely_above_as_below_and_every_ratio_alike) {
-  const ParameterValue figure = range(3.8, 2.2, 6.0, true);
-  EXPECT_NEAR(share_below(figure, 3.8), 0.5, 1e-4);
-  EXPECT_NEAR(share_below(figure, std::sqrt(2.2 * 3.8)), 0.25, 1e-4);
-  EXPECT_NEAR(share_below(figure, std::sqrt(3.8 * 6.0)), 0.75, 1e-4);
+  const ParameterValue parameter = range(3.8, 2.2, 6.0, true);
+  EXPECT_NEAR(share_below(parameter, 3.8), 0.5, 1e-4);
+  EXPECT_NEAR(share_below(parameter, std::sqrt(2.2 * 3.8)), 0.25, 1e-4);
+  EXPECT_NEAR(share_below(parameter, std::sqrt(3.8 * 6.0)), 0.75, 1e-4);
 }
 
 TEST(ParameterQuantile, range_of_temperatures_takes_every_difference_alike) {
-  const ParameterValue figure = range(25.0, 20.0, 32.0, false);
-  EXPECT_NEAR(share_below(figure, 22.5), 0.25, 1e-4);
-  EXPECT_NEAR(share_below(figure, 25.0), 0.5, 1e-4);
-  EXPECT_NEAR(share_below(figure, 28.5), 0.75, 1e-4);
+  const ParameterValue parameter = range(25.0, 20.0, 32.0, false);
+  EXPECT_NEAR(share_below(parameter, 22.5), 0.25, 1e-4);
+  EXPECT_NEAR(share_below(parameter, 25.0), 0.5, 1e-4);
+  EXPECT_NEAR(share_below(parameter, 28.5), 0.75, 1e-4);
 }
 
 TEST(Origin, names_are_read_back) {

@@ -50,8 +50,8 @@ void evaluate_long_recording(benchmark::State& state, bool with_curves) {
             .data());
   }
 }
-BENCHMARK_CAPTURE(evaluate_long_recording, figures, false)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(evaluate_long_recording, figures_and_curves, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(evaluate_long_recording, values, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(evaluate_long_recording, values_and_curves, true)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void read_database(benchmark::State& state) {
   for (auto _ : state) {

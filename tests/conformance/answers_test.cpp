@@ -57,7 +57,7 @@ TEST(Json, of_evaluate_keeps_the_contract) {
   EXPECT_EQ(answer.at("motors").size(), 2U);
 }
 
-TEST(Json, of_evaluate_without_samples_has_null_for_what_only_samples_tell) {
+TEST(Json, of_evaluate_without_samples_has_null_for_values_that_need_samples) {
   expect_evaluate_contract(run(kShortEvaluate + Words{"--samples", "0", "--json", "-"}).json(), false);
 }
 

@@ -168,7 +168,7 @@ TEST(ExitCode, of_friction_reports_all_bad_logs_and_writes_nothing) {
   EXPECT_FALSE(fs::exists(folder.path() / "robot.toml"));
 }
 
-TEST(ExitCode, of_friction_says_what_a_log_cannot_tell) {
+TEST(ExitCode, of_friction_is_3_if_no_wheel_turns) {
   const TemporaryFolder folder;
   const std::string standing = (folder.path() / "standing.csv").string();
   std::string text = "time_s,battery_V";

@@ -223,7 +223,7 @@ TEST(FrictionFit, a_wheel_that_should_stand_gives_no_information) {
   }
 }
 
-TEST(FrictionFit, says_what_a_drive_cannot_tell) {
+TEST(FrictionFit, names_the_problem_of_a_drive_that_does_not_determine_the_friction) {
   const Case known = any_case(6);
   const FrictionFit one_heading =
       fit_friction(parts_of(known, short_drive({20.0, 20.0, 20.0}, {0.4, 0.7, 1.0}), 6).parts, known.plant.body.kinematics, {});

@@ -81,7 +81,7 @@ TEST(RobustFit, intervals_of_unequal_scatter) {
 }
 
 /// Only three of twelve clusters of three rows determine the second coefficient. The intervals must keep their 95 % coverage.
-TEST(RobustFit, intervals_of_what_few_clusters_tell) {
+TEST(RobustFit, intervals_keep_their_coverage_if_few_clusters_determine_a_coefficient) {
   std::mt19937_64 engine(3);
   std::normal_distribution<double> normal;
   int inside = 0;

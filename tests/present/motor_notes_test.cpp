@@ -41,7 +41,7 @@ TEST(DefaultSpreadsText, AdviceForAFitAsksForNoChangeOfTheFile) {
 }
 
 // A duty states current and speed; a fit to measured power may contain losses that these do not show.
-TEST(DoubtfulFits, TellWhenThermalValuesHoldForMeasuredPower) {
+TEST(DoubtfulFits, StateWhenThermalValuesHoldForMeasuredPower) {
   motor::Motor motor = motor::read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
   motor.fit = motor::MotorFit{};
   for (const motor::HeatInput heat : {motor::HeatInput::input_power, motor::HeatInput::power_balance}) {

@@ -340,7 +340,7 @@ TEST_F(Robotino, where_wheels_slide_the_drag_should_know) {
 }
 
 /// Repeatability of a run: opposite headings have the same friction.
-TEST_F(Robotino, opposite_headings_tell_the_spread) {
+TEST_F(Robotino, opposite_headings_determine_the_spread) {
   for (const char* surface : {"table_surface", "brown_surface", "green_surface"}) {
     const std::vector<SteadyRun> runs = steady_runs(folder_ / surface, 0);
     double difference = 0.0;

@@ -138,8 +138,8 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
 }
 
 /// Sets a nearly zero spread. Without any spread the default would apply.
-void make_certain(base::ParameterValue& figure) {
-  figure.spread = base::Spread{base::Spread::Kind::range, figure.value - 1e-9 * std::abs(figure.value), figure.value, figure.value > 0.0};
+void make_certain(base::ParameterValue& parameter) {
+  parameter.spread = base::Spread{base::Spread::Kind::range, parameter.value - 1e-9 * std::abs(parameter.value), parameter.value, parameter.value > 0.0};
 }
 
 /// Samples with nearly zero spread must equal the nominal run. The ensemble supports additional nodes and all quantities.
@@ -157,8 +157,8 @@ TEST_F(EffectsOfAFile, samples_agree_with_the_reference_where_nothing_is_uncerta
     }
   }
   motor::Motor motor = MotorFile(everything).read();
-  for (auto& [key, figure] : motor.parameters) {
-    make_certain(figure);
+  for (auto& [key, parameter] : motor.parameters) {
+    make_certain(parameter);
   }
   for (motor::MotorEffect& effect : motor.effects) {
     std::ranges::for_each(effect.parameters, make_certain);

@@ -182,10 +182,10 @@ TEST(Evaluate, declared_range_of_the_driver_s_resistance_is_propagated) {
     return *result.winding_peak_C.p95 - *result.winding_peak_C.p05;
   };
   EXPECT_NEAR(spread_K(), 0.0, 1e-9);
-  base::ParameterValue figure;
-  figure.value = 0.3;
-  figure.spread = base::Spread{base::Spread::Kind::range, 0.1, 0.6, false};
-  robot.parameters["drive.driver_resistance"] = figure;
+  base::ParameterValue parameter;
+  parameter.value = 0.3;
+  parameter.spread = base::Spread{base::Spread::Kind::range, 0.1, 0.6, false};
+  robot.parameters["drive.driver_resistance"] = parameter;
   EXPECT_GT(spread_K(), 5.0);
 }
 

@@ -115,7 +115,7 @@ double share_error(double share, double draws) { return std::sqrt(share * (1.0 -
 // The peak increases with the resistance, so its quantiles follow from those of a normal distribution truncated at two standard deviations.
 TEST(Samples, spread_of_the_resistance_alone_gives_the_quantiles_of_the_closed_form) {
   motor::Motor motor = simple_motor();
-  set_figure(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  set_value(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   const boost::math::normal_distribution<> normal;
   const double outside = boost::math::cdf(normal, -2.0);
   const auto peak_C = [&](double share) {
@@ -147,12 +147,12 @@ TEST(Samples, spread_of_the_resistance_alone_gives_the_quantiles_of_the_closed_f
 
 TEST(Samples, median_of_symmetric_spreads_is_near_the_nominal_peak) {
   motor::Motor motor = simple_motor();
-  set_figure(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
+  set_value(motor, "terminal_resistance", &motor::MotorValues::terminal_resistance_ohm, resistance_within_10_percent());
   base::ParameterValue inner;
   inner.value = kInner_K_per_W;
   inner.origin = base::Origin::measured;
   inner.spread = base::Spread{base::Spread::Kind::tolerance, 0.9 * kInner_K_per_W, 1.1 * kInner_K_per_W, true};
-  set_figure(motor, "thermal_resistance_winding_stator", &motor::MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
+  set_value(motor, "thermal_resistance_winding_stator", &motor::MotorValues::thermal_resistance_winding_stator_K_per_W, inner);
   const OverSeeds found = over_seeds(10, 200, motor, constant_current(5.0));
   const double nominal_C = found.each.front().winding_peak_C.nominal;
   EXPECT_NEAR(found.p50_C, nominal_C, 0.01 * (nominal_C - 25.0));
@@ -168,7 +168,7 @@ TEST(Samples, a_limit_that_may_be_lower_makes_a_pass_marginal) {
   base::ParameterValue limit;
   limit.value = 155.0;
   limit.spread = base::Spread{base::Spread::Kind::range, 105.0, 165.0, false};
-  set_figure(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
+  set_value(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
   const double current_A = std::sqrt(105.0 / (1.0 + 0.0039 * 105.0) / 3.0);  // has its steady state at 130 °C
   constexpr int kSeeds = 20, kSamples = 200;
   const OverSeeds found = over_seeds(kSeeds, kSamples, motor, constant_current(current_A));
@@ -210,7 +210,7 @@ TEST(Spread, sampling_error_is_that_of_the_textbook) {
   EXPECT_GE(intervals.p95.high, 98.0);
 }
 
-TEST(Spread, few_samples_tell_no_upper_end) {
+TEST(Spread, few_samples_determine_no_upper_end) {
   const std::vector<double> samples_C(71, 80.0);
   const std::vector<char> over(71, 0);
   EXPECT_TRUE(std::isinf(sample_intervals(samples_C, over).p95.high));
@@ -279,7 +279,7 @@ motor::Motor limited_between(double low_C, double high_C) {
   base::ParameterValue limit;
   limit.value = 155.0;
   limit.spread = base::Spread{base::Spread::Kind::range, low_C, high_C, false};
-  set_figure(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
+  set_value(motor, "winding_limit", &motor::MotorValues::winding_limit_C, limit);
   return motor;
 }
 

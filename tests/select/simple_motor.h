@@ -23,9 +23,9 @@ inline constexpr double kAlpha_per_K = 0.0039;
 inline constexpr double kInner_K_per_W = 4.0;
 inline constexpr double kOuter_K_per_W = 2.0;
 
-inline void set_figure(motor::Motor& motor, std::string_view key, double motor::MotorValues::*value, const base::ParameterValue& figure) {
-  motor.parameters[key] = figure;
-  motor.nominal.*value = figure.value;
+inline void set_value(motor::Motor& motor, std::string_view key, double motor::MotorValues::*value, const base::ParameterValue& parameter) {
+  motor.parameters[key] = parameter;
+  motor.nominal.*value = parameter.value;
 }
 
 /// A motor that heats up within a minute or two, without drag.
@@ -74,11 +74,11 @@ inline double rest_C(double resistance_ohm, double current_A) {
 }
 
 inline base::ParameterValue resistance_within_10_percent() {
-  base::ParameterValue figure;
-  figure.value = kResistance_ohm;
-  figure.origin = base::Origin::measured;
-  figure.spread = base::Spread{base::Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
-  return figure;
+  base::ParameterValue parameter;
+  parameter.value = kResistance_ohm;
+  parameter.origin = base::Origin::measured;
+  parameter.spread = base::Spread{base::Spread::Kind::tolerance, 0.9 * kResistance_ohm, 1.1 * kResistance_ohm, true};
+  return parameter;
 }
 
 /// One idle and one loaded wheel.
