@@ -37,8 +37,9 @@ TEST_P(Intervals, hold_the_truth_and_are_no_wider_than_they_must_be) {
       const Mark& mark = each.marks[f];
       covered += mark.is_covered() ? 1 : 0;
       errors.push_back(std::abs(mark.error_ratio()));
-      squares += std::pow(std::log(mark.figure.value / mark.truth) / (0.5 * std::log(mark.figure.high / mark.figure.low) / 1.96), 2);
-      EXPECT_TRUE(mark.figure.is_identifiable) << name;
+      squares +=
+          std::pow(std::log(mark.parameter.value / mark.truth) / (0.5 * std::log(mark.parameter.high / mark.parameter.low) / 1.96), 2);
+      EXPECT_TRUE(mark.parameter.is_identifiable) << name;
     }
     std::ranges::sort(errors);
     // If 20 intervals have 95 % coverage, fewer than 16 hold with a probability of 1/400. The bounds for χ² with 20 degrees of freedom are

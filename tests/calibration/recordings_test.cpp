@@ -30,7 +30,7 @@ class Recordings : public testing::Test {
     }
     return all;
   }
-  static const CalibratedParameter& figure(const Calibration& calibration, std::string_view name) {
+  static const CalibratedParameter& parameter(const Calibration& calibration, std::string_view name) {
     return *std::ranges::find(calibration.parameters, name, &CalibratedParameter::name);
   }
   static const ErrorBeforeAfter& error(const std::vector<ErrorBeforeAfter>& errors, std::string_view signal) {
@@ -52,21 +52,21 @@ TEST_F(Recordings, DroneMotorNearStandstill) {
                                       read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map),
                                       read("tasrv_uav_motor", {"run2.csv"}, map), {.fit = {}, .written = WrittenFit::innovations});
   // 600 W raise the winding by 1.1 K/s in the first half minute of run 5, before much heat reaches the stator: about 520 J/K.
-  const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
+  const CalibratedParameter& winding = parameter(found, "winding_heat_capacity");
   EXPECT_TRUE(winding.is_identifiable);
   EXPECT_GT(winding.value, 350.0);
   EXPECT_LT(winding.value, 650.0);
   // The stator rises by 0.55 K/s at the end of run 3 and is about 60 K below the winding.
-  EXPECT_GT(figure(found, "thermal_resistance_winding_stator").value, 0.08);
-  EXPECT_LT(figure(found, "thermal_resistance_winding_stator").value, 0.35);
+  EXPECT_GT(parameter(found, "thermal_resistance_winding_stator").value, 0.08);
+  EXPECT_LT(parameter(found, "thermal_resistance_winding_stator").value, 0.35);
   // These two intervals come from a profile. The same bounds hold for them, less strictly; without the determinant one reached 7.4 K/W.
-  EXPECT_GT(figure(found, "thermal_resistance_winding_stator").low, 0.05);
-  EXPECT_LT(figure(found, "thermal_resistance_winding_stator").high, 0.5);
-  EXPECT_GT(figure(found, "stator_heat_capacity").low, 100.0);
+  EXPECT_GT(parameter(found, "thermal_resistance_winding_stator").low, 0.05);
+  EXPECT_LT(parameter(found, "thermal_resistance_winding_stator").high, 0.5);
+  EXPECT_GT(parameter(found, "stator_heat_capacity").low, 100.0);
   EXPECT_LT(total_K(found.fit_error, &ErrorBeforeAfter::after), 0.5 * total_K(found.fit_error, &ErrorBeforeAfter::before));
   EXPECT_LT(total_K(found.holdout_error, &ErrorBeforeAfter::after), total_K(found.holdout_error, &ErrorBeforeAfter::before));
   // The runs take minutes and contain no cool-down, so the heat that leaves the stator is not identifiable.
-  EXPECT_FALSE(figure(found, "thermal_resistance_stator_ambient").is_identifiable);
+  EXPECT_FALSE(parameter(found, "thermal_resistance_stator_ambient").is_identifiable);
   EXPECT_THAT(found.findings, Contains(testing::VariantWith<HeldValue>(testing::VariantWith<HeatShareHeld>(testing::_))));
 }
 
@@ -77,7 +77,7 @@ TEST_F(Recordings, DroneMotorIsForecastTo2K) {
       calibrate(motor::read_motor(kReports / "diagnosis/uav_motor.toml"),
                 read("tasrv_uav_motor", {"run1.csv", "run3.csv", "run5.csv"}, map), read("tasrv_uav_motor", {"run2.csv"}, map), {});
   ASSERT_TRUE(found.is_forecast_written);
-  double contact_W_per_K = 1.0 / figure(found, "thermal_resistance_winding_stator").value;
+  double contact_W_per_K = 1.0 / parameter(found, "thermal_resistance_winding_stator").value;
   for (const CalibratedParameter& each : found.parameters) {
     contact_W_per_K += each.name == "effects.contact_law.conductance" ? each.value : 0.0;
   }
@@ -94,13 +94,13 @@ TEST_F(Recordings, StallStaircase) {
   const Calibration found =
       calibrate(motor::read_motor(kReports / "calibration/ri50.toml"), read("umich_ri50", {"stall_staircase.csv"}, map), {}, options);
   // 8 A through 0.52 ohm raise the winding by 5.3 K/s: 6.3 J/K, or at most about 8 J/K including the heat that reaches the stator.
-  const CalibratedParameter& winding = figure(found, "winding_heat_capacity");
+  const CalibratedParameter& winding = parameter(found, "winding_heat_capacity");
   EXPECT_LT(winding.low, 6.6);
   EXPECT_GT(winding.high, 6.0);
   EXPECT_LT(error(found.fit_error, "winding_C").after.rmse_K, 0.25 * error(found.fit_error, "winding_C").before.rmse_K);
   // A run of 72 s does not determine the path from housing to air, and a locked rotor has no loss at speed.
-  EXPECT_FALSE(figure(found, "thermal_resistance_stator_ambient").is_identifiable);
-  EXPECT_FALSE(figure(found, "no_load_current").is_identifiable);
+  EXPECT_FALSE(parameter(found, "thermal_resistance_stator_ambient").is_identifiable);
+  EXPECT_FALSE(parameter(found, "no_load_current").is_identifiable);
   EXPECT_THAT(found.open, Contains(Field(&OpenDirection::reason, OpenReason::common_factor)));
 }
 
@@ -115,10 +115,10 @@ TEST_F(Recordings, CoolDowns) {
   EXPECT_THAT(found.open, Contains(Field(&OpenDirection::reason, OpenReason::no_heat)));
   for (const char* watts :
        {"thermal_resistance_winding_stator", "thermal_resistance_stator_ambient", "winding_heat_capacity", "stator_heat_capacity"}) {
-    EXPECT_FALSE(figure(found, watts).is_identifiable) << watts;
+    EXPECT_FALSE(parameter(found, watts).is_identifiable) << watts;
   }
   // From 44.1 °C, 170 s after the stop, to 38.1 °C, 520 s after it, in air of 24.5 °C: 990 s if only the slowest decay remained.
-  const CalibratedParameter& stator = figure(found, "thermal_time_constant_stator");
+  const CalibratedParameter& stator = parameter(found, "thermal_time_constant_stator");
   EXPECT_TRUE(stator.is_identifiable);
   EXPECT_LT(stator.low, 990.0);
   EXPECT_GT(stator.high, 500.0);
@@ -132,8 +132,8 @@ TEST_F(Recordings, TractionMotorHourByHour) {
   EXPECT_LT(total_K(found.fit_error, &ErrorBeforeAfter::after), 2.0);
   EXPECT_LT(total_K(found.holdout_error, &ErrorBeforeAfter::after), total_K(found.holdout_error, &ErrorBeforeAfter::before));
   // The limits correspond to 3 to 8 kg of copper.
-  EXPECT_GT(figure(found, "winding_heat_capacity").value, 1000.0);
-  EXPECT_LT(figure(found, "winding_heat_capacity").value, 3500.0);
+  EXPECT_GT(parameter(found, "winding_heat_capacity").value, 1000.0);
+  EXPECT_LT(parameter(found, "winding_heat_capacity").value, 3500.0);
   // The model lacks iron loss. The result must show that an effect is missing.
   EXPECT_GT(found.findings.size(), 1U);
 }

@@ -50,23 +50,23 @@ Folder::~Folder() {
 motor::Motor Sheet::motor(const Folder& folder) const {
   const auto file = folder.path() / "made_up.toml";
   std::ofstream out(file);
-  const auto figure = [&](const char* key, double value, const char* unit, const std::string& spread,
-                          const std::string& origin = "datasheet") {
+  const auto parameter = [&](const char* key, double value, const char* unit, const std::string& spread,
+                             const std::string& origin = "datasheet") {
     out << fmt::format("{} = {{ value = \"{:.6g}{}{}\", origin = \"{}\", source = \"s\", derivation = \"made up\"{} }}\n", key, value,
                        *unit ? " " : "", unit, origin, spread);
   };
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
          "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
-  figure("nominal_voltage", 24.0, "V", "");
-  figure("terminal_resistance", truth.resistance_25C_ohm, "ohm", resistance_spread, resistance_origin);
-  figure("torque_constant", 0.034, "N m/A", "");
-  figure("no_load_current", no_load_current_A, "A", "");
-  figure("temperature_coefficient", truth.temperature_coefficient_per_K, "1/K", "");
-  figure("winding_limit", 155.0, "degC", "");
-  figure("thermal_resistance_winding_stator", truth.winding_stator_K_per_W, "K/W", thermal_spread);
-  figure("thermal_resistance_stator_ambient", truth.stator_ambient_K_per_W, "K/W", thermal_spread);
-  figure("thermal_time_constant_winding", truth.winding_J_per_K * truth.winding_stator_K_per_W, "s", thermal_spread);
-  figure("thermal_time_constant_stator", truth.stator_J_per_K * truth.stator_ambient_K_per_W, "s", thermal_spread);
+  parameter("nominal_voltage", 24.0, "V", "");
+  parameter("terminal_resistance", truth.resistance_25C_ohm, "ohm", resistance_spread, resistance_origin);
+  parameter("torque_constant", 0.034, "N m/A", "");
+  parameter("no_load_current", no_load_current_A, "A", "");
+  parameter("temperature_coefficient", truth.temperature_coefficient_per_K, "1/K", "");
+  parameter("winding_limit", 155.0, "degC", "");
+  parameter("thermal_resistance_winding_stator", truth.winding_stator_K_per_W, "K/W", thermal_spread);
+  parameter("thermal_resistance_stator_ambient", truth.stator_ambient_K_per_W, "K/W", thermal_spread);
+  parameter("thermal_time_constant_winding", truth.winding_J_per_K * truth.winding_stator_K_per_W, "s", thermal_spread);
+  parameter("thermal_time_constant_stator", truth.stator_J_per_K * truth.stator_ambient_K_per_W, "s", thermal_spread);
   out.close();
   return motor::read_motor(file);
 }
@@ -140,8 +140,8 @@ CaseResult calibrate_case(const Sheet& sheet, const Case& one) {
   const auto begin = std::chrono::steady_clock::now();
   CaseResult result{{}, calibrate(prepared.motor, prepared.logs, {}, options)};
   result.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (const CalibratedParameter& figure : result.calibration.parameters) {
-    result.marks.push_back({figure.name, truth_of(figure.name, prepared.truth), figure});
+  for (const CalibratedParameter& parameter : result.calibration.parameters) {
+    result.marks.push_back({parameter.name, truth_of(parameter.name, prepared.truth), parameter});
   }
   return result;
 }

@@ -54,9 +54,9 @@ struct Case {
 struct Mark {
   std::string name;
   double truth = 0.0;
-  CalibratedParameter figure;
-  [[nodiscard]] bool is_covered() const { return figure.low <= truth && truth <= figure.high; }
-  [[nodiscard]] double error_ratio() const { return figure.value / truth - 1.0; }
+  CalibratedParameter parameter;
+  [[nodiscard]] bool is_covered() const { return parameter.low <= truth && truth <= parameter.high; }
+  [[nodiscard]] double error_ratio() const { return parameter.value / truth - 1.0; }
 };
 
 struct CaseResult {

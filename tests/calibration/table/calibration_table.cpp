@@ -48,9 +48,9 @@ void tabulate(const std::string& title, const Sheet& sheet, const Case& like, in
       const Mark& mark = each.marks[f];
       covered += mark.is_covered() ? 1 : 0;
       errors.push_back(std::abs(mark.error_ratio()));
-      const double half = 0.5 * std::log(mark.figure.high / mark.figure.low);
+      const double half = 0.5 * std::log(mark.parameter.high / mark.parameter.low);
       widths.push_back(half);
-      squares += std::pow(std::log(mark.figure.value / mark.truth) / (half / 1.96), 2);
+      squares += std::pow(std::log(mark.parameter.value / mark.truth) / (half / 1.96), 2);
       const Eigen::VectorXd& exponents = each.calibration.motor_model.parameters[f].exponents;
       const estimation::Fit& fit = each.calibration.fit;
       averaged.push_back(std::sqrt(exponents.dot(fit.covariance * exponents) / exponents.dot(fit.covariance_at_flux * exponents)));
