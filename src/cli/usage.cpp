@@ -119,22 +119,6 @@ bool takes_one_value(const CLI::Option& option) {
   return option.get_items_expected_max() == 1 && option.get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
 }
 
-/// Throws Failure (bad_input) if the command ends where a verb, or a part of one such as `log inspect`, must follow.
-void refuse_missing_verb(const CLI::App& app, const CLI::App* verb, std::span<const char* const> words) {
-  const std::vector<const CLI::App*> parts = (verb ? *verb : app).get_subcommands({});
-  if (words.size() > (verb ? 1U : 0U) || parts.empty()) {
-    return;
-  }
-  const std::string command = verb ? fmt::format("{} {}", app.get_name(), verb->get_name()) : app.get_name();
-  std::vector<std::string> examples;
-  for (const CLI::App* each : parts) {
-    examples.push_back(fmt::format("`{} {}`", command, each->get_name()));
-  }
-  throw base::Failure(base::ExitCode::bad_input,
-                      verb ? fmt::format("`{}` is incomplete; expected {}", command, fmt::join(examples, " or "))
-                           : fmt::format("there is no verb; expected one, such as {} (`{} --help` lists them)", examples.front(), command));
-}
-
 }  // namespace
 
 void check_words(const CLI::App& app, std::span<const char* const> words) {
@@ -147,7 +131,10 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no verb '{}'{} (`heatsoak --help` lists them)", words.front(),
                                                                base::did_you_mean(words.front(), verbs)));
   }
-  refuse_missing_verb(app, verb, words);
+  if (words.empty()) {
+    throw base::Failure(base::ExitCode::bad_input,
+                        "there is no verb; expected one, such as `heatsoak evaluate` (`heatsoak --help` lists them)");
+  }
   std::vector<std::string> known;
   for (const CLI::Option* option : (verb ? *verb : app).get_options()) {
     for (const std::string& name : option->get_lnames()) {

@@ -246,10 +246,11 @@ namespace {
 void require_neighbours_at_bodies(const motor::Motor& motor) {
   for (const motor::MotorEffect& effect : motor.effects) {
     if (effect.type->name == "neighbour_coupling" && effect.nodes.front() == "winding") {
-      throw base::Failure(base::ExitCode::bad_input,
-                          fmt::format("{}: effects.{} couples the winding with that of the neighbour; expected node = \"stator\" or another "
-                                      "body, because the guard of the drive core does not use the windings of its neighbours",
-                                      motor.id, effect.name));
+      throw base::Failure(
+          base::ExitCode::bad_input,
+          fmt::format("{}: effects.{} couples the winding with that of the neighbour; expected node = \"stator\" or another "
+                      "body, because the guard of the drive core does not use the windings of its neighbours",
+                      motor.id, effect.name));
     }
   }
 }

@@ -95,16 +95,18 @@ void add_power_off_and_friction(Document& document, const derate::Derating& dera
   for (const derate::PowerOffCase& each : derate::power_off_report(derating).cases) {
     cases.push_back(fmt::format("{:.1f} A ({})", fmt::join(each.allowed_A, ", "), each.name));
   }
-  document.add_note(Severity::background,
-                    fmt::format("After a loss of power a guard that saves and restores its state allows at standstill, {:.0f} s after power-on: "
-                                "{}. The motor was as hot as continuous use permits.",
-                                fmt::join(derate::kPowerOffMoments_s, ", "), fmt::join(cases, "; ")));
+  document.add_note(
+      Severity::background,
+      fmt::format("After a loss of power a guard that saves and restores its state allows at standstill, {:.0f} s after power-on: "
+                  "{}. The motor was as hot as continuous use permits.",
+                  fmt::join(derate::kPowerOffMoments_s, ", "), fmt::join(cases, "; ")));
   const std::optional<derate::OwnFriction> friction = derate::own_friction(derating);
   if (const double limp_A = derate::limp_current_A(derating); friction && limp_A < friction->needed_A) {
-    document.add_note(Severity::warning,
-                      fmt::format("A wheel whose speed is unknown stops: the guard then allows {:.2f} A, and the no-load current is {:.2f} A. "
-                                  "If the speed is known, the allowed current suffices up to {:.0f} rad/s; only a push turns the motor faster.",
-                                  limp_A, friction->needed_A, friction->held_rad_per_s));
+    document.add_note(
+        Severity::warning,
+        fmt::format("A wheel whose speed is unknown stops: the guard then allows {:.2f} A, and the no-load current is {:.2f} A. "
+                    "If the speed is known, the allowed current suffices up to {:.0f} rad/s; only a push turns the motor faster.",
+                    limp_A, friction->needed_A, friction->held_rad_per_s));
   }
 }
 

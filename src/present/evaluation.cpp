@@ -305,8 +305,9 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
                        : fmt::format(" Before {} of play, {} of rest do not suffice at {} of {} moments of the duty.", play,
                                      duration_text(select::kLongestRest_s), each.starts_never, each.starts);
   }
-  return fmt::format("Rest of a hot {}, which is in steady state at its limit and then must stay within its limits:{} All values are nominal.",
-                     motor_id, text);
+  return fmt::format(
+      "Rest of a hot {}, which is in steady state at its limit and then must stay within its limits:{} All values are nominal.", motor_id,
+      text);
 }
 
 /// Returns the ranking by samples with its notes.

@@ -201,8 +201,8 @@ class RecordingStream::Intake {
   }
 
   [[nodiscard]] std::string how_to_map() const {
-    return fmt::format("A foreign log is read with a mapping. Complete this one and save it as {}.map.toml:\n{}",
-                       log_.filename().string(), suggested_mapping(table_.header()));
+    return fmt::format("A foreign log is read with a mapping. Complete this one and save it as {}.map.toml:\n{}", log_.filename().string(),
+                       suggested_mapping(table_.header()));
   }
 
   std::optional<BlockExpression> condition(const std::string& text, const base::Location& at, const char* key,

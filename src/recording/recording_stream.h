@@ -16,8 +16,8 @@ namespace heatsoak::recording {
 /// Omits and reports invalid rows and samples (blank, not numbers, repeated or decreasing times, saturated, frozen, outliers of
 /// temperatures); never replaces them by guesses. Memory is bounded. Frozen and saturated samples and the order of rows are judged within
 /// parts of some 65 000 rows, which is all of most logs. Throws Failure (bad_input) if the file is not a table or lacks a column. The same
-/// if more than 10 % of the rows go back in time, or more than half repeat a time. Throws Failure (cannot_answer) if nothing is left. next()
-/// throws errors that are visible only at the end of the file.
+/// if more than 10 % of the rows go back in time, or more than half repeat a time. Throws Failure (cannot_answer) if nothing is left.
+/// next() throws errors that are visible only at the end of the file.
 class RecordingStream {
  public:
   /// `report` must outlive the stream.

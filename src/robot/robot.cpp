@@ -63,10 +63,12 @@ constexpr std::array<RobotParameterSpec, 29> kSpecs{{
      {"slip_speed", "m/s", base::Range::between(1e-4, 10.0), "slip speed at which 0.71 of the largest rolling force is used"},
      [](auto& robot) -> decltype(auto) { return (robot.traction.slip_speed_m_per_s); }},
     {"drive",
-     {"driver_resistance", "ohm", base::Range::between(0.0, 10.0), "resistance of switches and traces in series with the winding of one motor"},
+     {"driver_resistance", "ohm", base::Range::between(0.0, 10.0),
+      "resistance of switches and traces in series with the winding of one motor"},
      [](auto& robot) -> decltype(auto) { return (robot.drive.driver_resistance_ohm); }},
     {"drive",
-     {"driver_standby_power", "W", base::Range::between(0.0, 100.0), "power of one motor's driver without current: gate drive, logic, switching"},
+     {"driver_standby_power", "W", base::Range::between(0.0, 100.0),
+      "power of one motor's driver without current: gate drive, logic, switching"},
      [](auto& robot) -> decltype(auto) { return (robot.drive.driver_standby_W); }},
     {"drive",
      {"control_rate", "Hz", base::Range::between(20.0, 1000.0), "rate at which the firmware commands the motors"},
@@ -257,8 +259,9 @@ void read_wheels(const input::Value& root, input::Reader& top, Robot& robot, bas
                                                   "distance from the robot's axis to the contact points; check the unit, mm or m"},
                                                  input::Need::required)
                                       .value_or(1.0);
-  robot.wheels.axis_rad =
-      wheels->quantities({"axis_angles", "rad", base::Range::any(), "direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first"}, input::Need::required);
+  robot.wheels.axis_rad = wheels->quantities(
+      {"axis_angles", "rad", base::Range::any(), "direction of each wheel's axle from straight ahead, counter-clockwise, wheel 1 first"},
+      input::Need::required);
   if (robot.wheels.axis_rad.size() < 3) {
     wheels->problem("axis_angles", "names fewer than three wheels; an omni-directional robot has at least three");
   }
@@ -282,7 +285,9 @@ void read_drive(input::Reader& top, Robot& robot) {
                      input::Need::optional)
           .value_or(1.0);
   robot.drive.voltage_limit_V =
-      drive->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest voltage that the driver can apply to one motor"}, input::Need::optional)
+      drive
+          ->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest voltage that the driver can apply to one motor"},
+                     input::Need::optional)
           .value_or(robot.drive.voltage_limit_V);
   robot.drive.current_limit_A =
       drive

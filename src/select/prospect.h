@@ -41,8 +41,8 @@ class Prospect {
   /// probability is that of deciding both; the shares are taken as independent.
   [[nodiscard]] double decided_probability(int samples) const;
 
-  /// Returns the probability that the rounds of evaluate_until_decided() end at `samples` samples at the latest: the verdict is decided then,
-  /// or `most` samples will probably not decide it (is_worth_another_round()). Without draws only a decision ends them.
+  /// Returns the probability that the rounds of evaluate_until_decided() end at `samples` samples at the latest: the verdict is decided
+  /// then, or `most` samples will probably not decide it (is_worth_another_round()). Without draws only a decision ends them.
   [[nodiscard]] double ended_probability(int samples, int most) const;
 
   /// Returns the probability that the verdict will be pass.

@@ -23,23 +23,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-select::MotorEvaluation heating_to(double peak_C) {
-  select::MotorEvaluation motor;
-  motor.winding_limit_C = 125.0;
-  for (int i = 0; i <= 800; ++i) {
-    motor.curves.time_s.push_back(i);
-    motor.curves.winding_C.push_back(25.0 + (peak_C - 25.0) * i / 800.0);
-  }
-  return motor;
-}
-
-TEST(Sparkline, rises_with_the_winding_from_ambient_to_limit) {
-  EXPECT_EQ(sparkline(heating_to(125.0), 25.0), "▁▂▃▄▅▆▇█");
-  EXPECT_EQ(sparkline(heating_to(25.0), 25.0), "▁▁▁▁▁▁▁▁");
-  EXPECT_EQ(sparkline(heating_to(1000.0), 25.0), "████████");
-  EXPECT_EQ(sparkline(select::MotorEvaluation{}, 25.0), "");
-}
-
 select::MotorEvaluation sampled(double probability, select::Interval95 interval, int samples) {
   select::MotorEvaluation motor;
   motor.samples = samples;
@@ -323,9 +306,9 @@ TEST(EvaluationDocument, has_one_note_for_all_undecided_motors) {
 TEST(EvaluationDocument, undecided_motors_with_equal_needs_stand_together) {
   const std::vector<select::MotorEvaluation> motors{undecided("a", 3), undecided("b", 1), undecided("c", 3), undecided("d", 1)};
   const std::vector<Note> notes = evaluation_document(answer_with(motors, "division_a_match")).notes;
-  EXPECT_EQ(std::ranges::count_if(notes, [](const Note& each) {
-              return each.words.find(" for b, d; ") != std::string::npos && each.words.ends_with(" for a, c.");
-            }),
+  EXPECT_EQ(std::ranges::count_if(
+                notes,
+                [](const Note& each) { return each.words.find(" for b, d; ") != std::string::npos && each.words.ends_with(" for a, c."); }),
             1);
 }
 
@@ -359,8 +342,7 @@ TEST(EvaluationJson, its_keys_give_the_order_and_the_margins_of_the_table) {
       return std::pair(std::ranges::find(verdicts, each.at("verdict").get<std::string>()), -each.at("ranking_margin_K").get<double>());
     });
     const Table table = evaluation_document(answer).tables.front();
-    const auto margin =
-        static_cast<std::size_t>(std::ranges::find(table.columns, "margin", &Column::name) - table.columns.begin());
+    const auto margin = static_cast<std::size_t>(std::ranges::find(table.columns, "margin", &Column::name) - table.columns.begin());
     ASSERT_EQ(table.rows.size(), of_json.size());
     for (std::size_t i = 0; i < of_json.size(); ++i) {
       EXPECT_EQ(table.rows[i][1].words, of_json[i].at("id").get<std::string>());

@@ -22,7 +22,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::vector<std::string> kForeign{"Time [ms]", "winding_F",      "Stator temp (K)", "speed_rpm", "wheel_speed_rpm_2",
+const std::vector<std::string> kForeign{"Time [ms]",  "winding_F",      "Stator temp (K)", "speed_rpm", "wheel_speed_rpm_2",
                                         "current_mA", "Iq \"peak\" #1", "thrust_N",        "foo bar",   "winding_C"};
 
 Mapping read_back(const std::vector<std::string>& header) {

@@ -139,7 +139,8 @@ TEST_F(EffectsOfAFile, evaluate_shows_them_in_the_nominal_run_and_in_the_samples
 
 /// Sets a nearly zero spread. Without any spread the default would apply.
 void make_certain(base::ParameterValue& parameter) {
-  parameter.spread = base::Spread{base::Spread::Kind::range, parameter.value - 1e-9 * std::abs(parameter.value), parameter.value, parameter.value > 0.0};
+  parameter.spread =
+      base::Spread{base::Spread::Kind::range, parameter.value - 1e-9 * std::abs(parameter.value), parameter.value, parameter.value > 0.0};
 }
 
 /// Samples with nearly zero spread must equal the nominal run. The ensemble supports additional nodes and all quantities.

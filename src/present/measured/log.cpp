@@ -141,8 +141,9 @@ void add_log(Document& document, const recording::InspectedLog& log) {
     document.add_note(Severity::note, fmt::format("{}: {}", recording.name, words_of(note)));
   }
   if (!log.suggested_mapping.empty()) {
-    document.listings.push_back({fmt::format("Mapping to start from; complete it and save it as {}.map.toml", recording.file.filename().string()),
-                                 log.suggested_mapping});
+    document.listings.push_back(
+        {fmt::format("Mapping to start from; complete it and save it as {}.map.toml", recording.file.filename().string()),
+         log.suggested_mapping});
   }
 }
 
