@@ -37,7 +37,7 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
   const auto table_with = [&](const Words& options) {
     const ProgramRun done = run(kDerateEcx + Words{"--motor", "lossy.toml", "--out", "guard.h", "--json", "-"} + options, here(folder));
     EXPECT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_THAT(done.err, HasSubstr("below it from"));
+    EXPECT_THAT(done.err, HasSubstr("% lower, from"));
     return done.json()["table"];
   };
   const nlohmann::json fine = table_with({"--error", "0.5%"});
