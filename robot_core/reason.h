@@ -1,9 +1,9 @@
 // Reasons why a wheel gets less than the command asks for. Limits are normal operation, faults are not.
 //
 // Fault table. W concerns one wheel, R the whole robot. No fault in this table raises a limit of the current, and no reaction to one does,
-// up to the highest speed of the guard's table. Within the limits a faulty sensor can make the control drive more current, for example a
-// wheel sensor with a wrong scale or sign, until it is detected. Wheels without a fault still take their normal current while another one
-// is held to Config::limp_current_A.
+// up to the highest speed of the guard's table and as long as faulty speed sensors do not agree with each other. Within the limits a faulty
+// sensor can make the control drive more current until it is detected, for example a wheel sensor with a wrong scale or sign. Wheels
+// without a fault still take their normal current while another one is held to Config::limp_current_A.
 // clang-format off
 //
 // | code   | condition                                                   | reaction                                          | clears                          |
@@ -52,8 +52,9 @@
 // |        | finite or more than the battery can drive                   |                                                   |                                 |
 // | 121 W  | motor current contradicts voltage and speed: a stuck        | as 120; the guard uses the larger magnitude; a    | kSteadyAgain_s of agreement     |
 // |        | sensor, or a wrong wheel speed                              | sample far above the limit opens the bridge       |                                 |
-// | 130 R  | battery voltage not finite, below half of the lowest or     | PWM for a full battery, limits for an empty one   | next valid sample               |
-// |        | above 1.1 times the full voltage                            |                                                   |                                 |
+// | 130 R  | battery voltage not finite, below half of the lowest or     | PWM for a full battery, limits for an empty one   | next valid sample; among the    |
+// |        | above 1.1 times the full voltage                            |                                                   | first 20: the PWM's later, with |
+// |        |                                                             |                                                   | 0.4 % of a full battery per s   |
 // | 140 R  | yaw rate not finite, out of sensor range, or jumping        | yaw rate from the wheels                          | kSteadyAgain_s of agreement     |
 // | 141 R  | yaw rate constant while the wheels turn the robot           | as 140                                            | as 140                          |
 // | 150 R  | air temperature seen once, also before a restart; now not   | hottest declared air temperature                  | next valid sample               |

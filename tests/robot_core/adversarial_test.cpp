@@ -386,7 +386,7 @@ TEST(Adversarial, CombinationsOfLies) {
         print(is_covered ? "three, at most one of speed" : "three of any kind", wheels, are_currents_fitted, tally);
         EXPECT_EQ(tally.non_finite, 0);
         EXPECT_LT(tally.hottest_C, kWindingLimit_C);
-        // Two faulty speed sensors may agree with each other. The worst of 80 such rows had a share of 1.1e-3.
+        // Two faulty speed sensors may agree with each other. The worst of 40 such rows had a share of 1.1e-3.
         constexpr double kMost_share = 2e-3;
         const double most = is_covered ? 0.0 : kMost_share * static_cast<double>(tally.steps);
         EXPECT_LE(static_cast<double>(tally.excesses), most);

@@ -94,6 +94,36 @@ TEST(FaultTable, wheel_speed_unknown) {
   }
 }
 
+// The table of this motor falls with the speed, and the speed of the wheel is unknown.
+TEST(LimpCurrent, IsNoMoreThanAHotMotorMayGetAtAnySpeed) {
+  const Config config = make_config(4);
+  const robot_core::GuardModel& model = *config.guard;
+  ASSERT_GT(model.table.speed_rad_per_s.count, 1);
+  int reduced = 0;
+  for (float body_C = 40.0F; body_C < 155.0F; body_C += 2.0F) {
+    State state;
+    ASSERT_TRUE(robot_core::start(config, state, {.is_rested = true, .body_C = body_C}));
+    Plant plant(config, {});
+    Random random(1);
+    for (int k = 0; k < 100; ++k) {
+      Input input = plant.sense(random, kNoise_rad_per_s, true);
+      std::fill_n(input.wheel_speed_rad_per_s, 3, kNone);
+      input.command.mode = Mode::coast;
+      robot_core::step(config, state, input);
+    }
+    const robot_core::GuardState& guard = state.guard[0];
+    for (const float share : {0.0F, 0.3F, 0.6F, 1.0F}) {
+      const float speed_rad_per_s = share * model.table.most_speed_rad_per_s;
+      const float winding_C = guard.state_C[0] + config.braking_reserve_K;
+      EXPECT_LE(state.wheel[0].allowed_A, robot_core::allowed_current_A(model, speed_rad_per_s, guard.state_C[1], winding_C) + 1e-3F)
+          << body_C << " degC, " << share;
+    }
+    EXPECT_LE(state.wheel[0].allowed_A, config.limp_current_A);
+    reduced += state.wheel[0].allowed_A > 0.0F && state.wheel[0].allowed_A < config.limp_current_A ? 1 : 0;
+  }
+  EXPECT_GT(reduced, 1);
+}
+
 // Swapped sensors of opposite wheels: a push of 0.3 s may make a robot spin that should stand.
 TEST(FaultTable, runaway) {
   const Config config = make_config(4);
