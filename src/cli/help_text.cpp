@@ -19,6 +19,14 @@ std::string HelpText::beside_names(const std::string& text) const {
   return present::wrapped(text, "", std::max(kLeast, width_ - std::min(width_, get_column_width())));
 }
 
+std::string HelpText::make_option_name(const CLI::Option* option, bool is_positional) const {
+  // CLI11 appends the value of a flag that switches something off.
+  std::string names = CLI::Formatter::make_option_name(option, is_positional);
+  constexpr std::string_view kOff = "{false}";
+  const std::size_t at = names.find(kOff);
+  return at == std::string::npos ? names : names.erase(at, kOff.size());
+}
+
 std::string HelpText::make_option_opts(const CLI::Option* option) const {
   // CLI11 appends a check to the name of the type: "TEXT:{a,b}", "INT:INT in [1 - 1000]". The check alone says enough.
   std::string text = CLI::Formatter::make_option_opts(option);

@@ -14,6 +14,7 @@ class HelpText final : public CLI::Formatter {
  public:
   explicit HelpText(std::size_t width);
 
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override;
   std::string make_option_opts(const CLI::Option* option) const override;
   std::string make_option_desc(const CLI::Option* option) const override;
   std::string make_subcommand(const CLI::App* verb) const override;

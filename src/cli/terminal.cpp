@@ -67,7 +67,7 @@ std::string time_words(double time_s) {
 }
 
 /// Formats "12 s" if that is within a factor of two of both ends of the range. Otherwise adds the end that is further away to the likely
-/// time: "about 40 s left, 3 min at most". If more phases may follow: "at least 12 s left".
+/// time: "about 40 s left, possibly 3 min". If more phases may follow: "at least 12 s left".
 std::string remaining_words(const base::JobEstimate& estimate) {
   constexpr double kWide_ratio = 4.0;
   const double shortest_s = std::max(1.0, estimate.shortest_s.value_or(0.0));
@@ -80,12 +80,15 @@ std::string remaining_words(const base::JobEstimate& estimate) {
   }
   const double likely_s = std::clamp(estimate.likely_s.value_or(shortest_s), shortest_s, longest_s);
   const bool is_end_later = longest_s / likely_s > likely_s / shortest_s;
-  return fmt::format("about {} left, {} at {}", time_words(likely_s), time_words(is_end_later ? longest_s : shortest_s),
-                     is_end_later ? "most" : "least");
+  return fmt::format("about {} left, possibly {}", time_words(likely_s), time_words(is_end_later ? longest_s : shortest_s));
 }
 
-/// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below.
+/// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below. No share is
+/// known while phases of unknown length may follow.
 std::string words_of(const base::JobEstimate& estimate, double& most_share) {
+  if (estimate.is_open) {
+    return fmt::format("{}: {}", estimate.what, remaining_words(estimate));
+  }
   most_share = std::max(most_share, std::min(estimate.done_share, 0.99));
   return fmt::format("{}: {:.0f} %, {}", estimate.what, 100.0 * most_share, remaining_words(estimate));
 }

@@ -133,7 +133,7 @@ std::string what_happens(const select::MotorEvaluation& motor) {
     case ShownVerdict::infeasible:
       return fmt::format("cannot drive this duty: {} does not suffice", factor);
     case ShownVerdict::undecided:
-      return fmt::format("is undecided: {}", words_of(*open_share(motor), motor.samples));
+      return fmt::format("is undecided, {}: {}", needed_words(motor), words_of(*open_share(motor), motor.samples));
     case ShownVerdict::fail:
       return fmt::format("fails: {}", motor.games > 0 ? over : peak_words(motor));
     case ShownVerdict::marginal:

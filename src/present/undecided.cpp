@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,6 +78,16 @@ std::string note_on_several(const std::vector<const select::MotorEvaluation*>& m
 }
 
 }  // namespace
+
+std::string needed_words(const select::MotorEvaluation& motor) {
+  const bool is_drawn = motor.games > 0;
+  const std::optional<int> half = are_few(motor) ? select::first_samples(is_drawn) : select::deciding_samples(motor).half;
+  if (!half) {
+    return fmt::format("more {} will hardly decide", unit_of(motor));
+  }
+  const int more = *half - motor.samples;
+  return fmt::format("about {} more {} needed", is_drawn ? more / base::kLanes : more, unit_of(motor));
+}
 
 void add_undecided_note(Document& document, std::span<const select::MotorEvaluation> results) {
   std::vector<const select::MotorEvaluation*> undecided;

@@ -1,6 +1,7 @@
 // Text and numbers of an evaluation.
 #include "present/evaluation.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <set>
 
 #include "base/binomial_bound.h"
+#include "base/lanes.h"
 #include "present/renderer.h"
 #include "present/verdict_topic.h"
 #include "present/verdict_words.h"
@@ -300,6 +302,14 @@ TEST(EvaluationDocument, has_one_note_for_all_undecided_motors) {
     }
     EXPECT_FALSE(evaluation_json(answer).at("motors").at(0).at("decided").get<bool>());
   }
+}
+
+TEST(EvaluationDocument, headline_of_an_undecided_motor_says_how_many_games_are_needed) {
+  const select::MotorEvaluation motor = undecided("a", 3);
+  const int more = *select::deciding_samples(motor).half / base::kLanes - motor.games;
+  ASSERT_GT(more, 0);
+  const Document document = evaluation_document(answer_with({motor}, "division_a_match"));
+  EXPECT_THAT(document.headline.at(1).words, HasSubstr(fmt::format("a is undecided, about {} more games needed: ", more)));
 }
 
 // A sentence per motor would fill a screen when the whole database is compared.

@@ -139,7 +139,7 @@ Command evaluate_command() {
             ->type_name("G")
             ->capture_default_str();
         app.add_option("--games", options->closed_loop.games, "number of games with --closed-loop, with successive seeds")
-            ->check(CLI::Range(1, 1000))
+            ->check(CLI::Range(1, 1000).description("N (1 to 1000)"))
             ->capture_default_str();
         app.add_flag("!--no-changes", options->job.with_changes,
                      "do not search for the changes of the robot that cool its motor most: acceleration, jerk, speed, mass, wheels, gear");
