@@ -1,4 +1,4 @@
-// What the value of a threshold rests on, as data. src/present makes the words.
+// Draws, intervals and files from which a threshold's value was computed, as data. src/present makes the words.
 #pragma once
 
 #include <cstddef>

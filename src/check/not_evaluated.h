@@ -1,4 +1,4 @@
-// Why a threshold has no value, as data. src/present makes the words.
+// Reasons for which a threshold has no value, as data. src/present makes the words.
 #pragma once
 
 #include <cstddef>

@@ -42,7 +42,7 @@ struct PowerOffReport {
   std::vector<double> start_C;  ///< every node before the loss of power: its hottest steady state at the full allowed current
   std::vector<PowerOffCase> cases;
 };
-/// Returns what the guard's memory is worth for this motor: no loss of power, 2 s, an unknown time, and a damaged buffer, which counts as a
+/// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer, which counts as a
 /// motor at its limit. No time is unsaved and no board sensor is used.
 PowerOffReport power_off_report(const Derating& derating);
 
