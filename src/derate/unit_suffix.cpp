@@ -18,7 +18,7 @@ struct NamedUnit {
   std::string_view dividend;
   std::string_view divisor;
   std::string_view word;  ///< physical quantity of that unit
-  std::string_view unit;  ///< as a name ends in it
+  std::string_view unit;  ///< unit in the form in which it ends a name
 };
 /// Units of the factors in thermal laws.
 constexpr std::array kNamedUnits{NamedUnit{"W", "A2", "resistance", "ohm"},           NamedUnit{"W s", "rad", "torque", "Nm"},
@@ -30,11 +30,8 @@ std::string suffix_of(const Words& dividend, const Words& divisor) {
   if (dividend.empty() && divisor.empty()) {
     return "ratio";
   }
-  return fmt::format("{}{}{}{}", fmt::join(dividend, "_"),
-                     divisor.empty()    ? ""
-                     : dividend.empty() ? "per_"
-                                        : "_per_",
-                     fmt::join(divisor, "_per_"), "");
+  const std::string_view per = divisor.empty() ? "" : dividend.empty() ? "per_" : "_per_";
+  return fmt::format("{}{}{}", fmt::join(dividend, "_"), per, fmt::join(divisor, "_per_"));
 }
 
 /// Removes the words that both lists have.

@@ -73,7 +73,7 @@ struct HeadingWheel {
 /// Measured friction curve over the direction of travel; friction.h has its formula.
 struct RobotHeadingFriction {
   std::optional<double> constant_Nm = {};      ///< for all wheels; empty if each wheel has its own
-  std::optional<double> sine_Nm = {};          ///< as constant_Nm
+  std::optional<double> sine_Nm = {};          ///< for all wheels; empty if each wheel has its own
   std::optional<double> double_angle_Nm = {};  ///< 0 if empty
   std::optional<double> rotation_Nm = {};      ///< equals wheel_torque_Nm if empty
   std::vector<double> double_angle_phase_rad;  ///< one per wheel; empty without the double-angle term

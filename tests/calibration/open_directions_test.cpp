@@ -56,7 +56,7 @@ TEST(OpenDirections, CommonScaleOfAllHeatRestsOnTheStatedResistance) {
   }));
 }
 
-// How well the stator determines the winding depends on the length of the logs. Whatever remains open has this reason.
+// Longer logs of the stator determine the winding better. The reason stated for parameters that stay open is the missing winding sensor.
 TEST(OpenDirections, WindingCapacityWhereOnlyTheStatorIsSensed) {
   const auto calibrated = [](std::uint64_t seed, int runs) {
     Case one = short_case(seed);

@@ -114,7 +114,7 @@ TEST(MatchAnswer, no_row_leans_on_the_row_above) {
   }
 }
 
-// As in the picture of `evaluate`: the stator changes by far less, so it has axes of its own, below the winding.
+// The stator changes far less than the winding, so it has its own axes below it. The picture of `evaluate` does the same.
 TEST(MatchChart, has_the_winding_above_the_stator_with_one_colour_per_wheel) {
   simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::pass, 71.5), {});
   match.runs.resize(1);
