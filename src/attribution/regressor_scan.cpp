@@ -259,10 +259,11 @@ class Scanner {
     HatColumns heat_W = HatColumns::Zero(design.run.samples() - 1, kKnots + 1);
     for (Eigen::Index k = 0; k < family.multiplier[r].size(); ++k) {
       const double value = regressor.values[r][k];
-      const Eigen::Index row = design.interval_of[static_cast<std::size_t>(k)];
-      if (row < 0 || std::isnan(value)) {
+      const std::optional<Eigen::Index> interval = design.interval_of[static_cast<std::size_t>(k)];
+      if (!interval || std::isnan(value)) {
         continue;
       }
+      const Eigen::Index row = *interval;
       const double share =
           (*input_.fitted)[r].duration_s[static_cast<std::size_t>(k)] / design.run.duration_s[static_cast<std::size_t>(row)];
       const double usual_W = sign * share * family.usual * family.multiplier[r][k];

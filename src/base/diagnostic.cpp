@@ -50,11 +50,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string to_string(const Diagnostic& diagnostic) {
-  std::string place = diagnostic.at.file;
-  if (diagnostic.at.line > 0) {
-    place += fmt::format(":{}:{}", diagnostic.at.line, diagnostic.at.column);
+std::string to_string(const Location& at) {
+  std::string text = at.file;
+  for (const std::optional<int> number : {at.line, at.column}) {
+    text += number ? fmt::format(":{}", *number) : "";
   }
+  return text;
+}
+
+std::string to_string(const Diagnostic& diagnostic) {
+  const std::string place = to_string(diagnostic.at);
   return fmt::format("{}{}error: {}{}{}", place, place.empty() ? "" : ": ", diagnostic.key, diagnostic.key.empty() ? "" : ": ",
                      diagnostic.message);
 }

@@ -1,6 +1,7 @@
 // Problems as they are reported to the user: place, problem and remedy. All commands use these types.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,12 +20,15 @@ enum class ExitCode {
   bug = 70
 };
 
-/// A place in one of the user's files. Line and column count from 1; 0 means unknown.
+/// A place in one of the user's files. Line and column count from 1. Without them it is the file as a whole.
 struct Location {
   std::string file;
-  int line = 0;
-  int column = 0;
+  std::optional<int> line = {};
+  std::optional<int> column = {};
 };
+
+/// Formats as `file:line:column`, as far as they are known.
+std::string to_string(const Location& at);
 
 struct Diagnostic {
   Location at;

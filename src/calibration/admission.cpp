@@ -117,9 +117,9 @@ double generous_heat_W(const motor::MotorValues& nominal, const recording::Recor
 }
 
 /// Returns the heat that the observed temperature rises need, divided by the heat supplied: the median over rises of 10 K or more with at
-/// least a quarter of the largest mean heat. 0 if there is no such rise.
-double heat_ratio_of_rises(const recording::Recording& recording, const recording::Channel& channel, double capacity_J_per_K,
-                           std::span<const double> heat_W) {
+/// least a quarter of the largest mean heat. Empty if there is no such rise.
+std::optional<double> heat_ratio_of_rises(const recording::Recording& recording, const recording::Channel& channel, double capacity_J_per_K,
+                                          std::span<const double> heat_W) {
   constexpr double kRise_K = 10.0;
   constexpr double kMuchHeat_share = 0.25;
   struct Rise {
@@ -155,7 +155,7 @@ double heat_ratio_of_rises(const recording::Recording& recording, const recordin
       ratios.push_back(each.heat_ratio);
     }
   }
-  return ratios.empty() ? 0.0 : recording::middle_of(ratios);
+  return ratios.empty() ? std::nullopt : std::optional(recording::middle_of(ratios));
 }
 
 /// Reports temperatures that rise faster than possible even if all losses heated this one body and none of the heat flowed away.
@@ -175,9 +175,9 @@ void faster_than_the_motor(const motor::Motor& motor, const recording::Recording
     for (std::size_t row = heat_W.size(); row < recording.rows(); ++row) {
       heat_W.push_back(generous_heat_W(nominal, recording, row));
     }
-    const double ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
-    if (ratio > kTooFast_ratio) {
-      wrong.emplace_back(RisesTooFast{key, ratio, ratio > kHours_ratio ? recording::TimeUnit::hours : recording::TimeUnit::minutes});
+    const std::optional<double> ratio = heat_ratio_of_rises(recording, *channel, capacity_J_per_K, heat_W);
+    if (ratio && *ratio > kTooFast_ratio) {
+      wrong.emplace_back(RisesTooFast{key, *ratio, *ratio > kHours_ratio ? recording::TimeUnit::hours : recording::TimeUnit::minutes});
       return;
     }
   }

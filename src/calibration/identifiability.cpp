@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "calibration/loss_at_stator.h"
 
@@ -35,24 +36,24 @@ Look look(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs
   return seen;
 }
 
-/// Indices of the free parameters by role; −1 if not free.
+/// Indices of the free parameters by role; empty if not free.
 struct Roles {
-  int winding_capacity = -1;
-  int winding_stator = -1;
-  int stator_capacity = -1;
-  int stator_ambient = -1;
-  int resistance = -1;
-  int drag = -1;
+  std::optional<Eigen::Index> winding_capacity;
+  std::optional<Eigen::Index> winding_stator;
+  std::optional<Eigen::Index> stator_capacity;
+  std::optional<Eigen::Index> stator_ambient;
+  std::optional<Eigen::Index> resistance;
+  std::optional<Eigen::Index> drag;
 };
 
 Roles roles_of(const estimation::Model& model) {
-  const auto find = [&](std::string_view name) {
+  const auto find = [&](std::string_view name) -> std::optional<Eigen::Index> {
     for (Eigen::Index i = 0; i < model.free_count(); ++i) {
       if (model.name(i) == name) {
-        return static_cast<int>(i);
+        return i;
       }
     }
-    return -1;
+    return std::nullopt;
   };
   return {find("winding.heat_capacity"),
           find("winding_stator.thermal_resistance"),
@@ -119,7 +120,7 @@ OpenDirection open_for(OpenReason reason) {
   return open;
 }
 
-double component(const Eigen::VectorXd& direction, int place) { return place >= 0 ? direction[place] : 0.0; }
+double component(const Eigen::VectorXd& direction, std::optional<Eigen::Index> place) { return place ? direction[*place] : 0.0; }
 
 /// Returns |cos| of the angle between `direction` and the scale direction: one factor on all heat and heat capacities, its inverse on all
 /// thermal resistances. Along the scale direction no temperature changes.
@@ -128,8 +129,8 @@ double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
   for (const auto& [place, sign] :
        {std::pair(roles.winding_capacity, 1.0), std::pair(roles.winding_stator, -1.0), std::pair(roles.stator_capacity, 1.0),
         std::pair(roles.stator_ambient, -1.0), std::pair(roles.resistance, 1.0), std::pair(roles.drag, 1.0)}) {
-    if (place >= 0) {
-      scale[place] = sign;
+    if (place) {
+      scale[*place] = sign;
     }
   }
   return std::abs(direction.dot(scale.normalized()));
@@ -185,8 +186,8 @@ bool is_of_stator(const MotorModel& motor, const CalibratedValue& parameter) {
 /// Reason why a single parameter is not identifiable although no open direction contains it.
 OpenReason reason_of(const MotorModel& motor, const CalibratedValue& parameter, const Look& seen) {
   const Roles roles = roles_of(motor.model);
-  const auto holds = [&](int place) { return component(parameter.exponents, place) != 0.0; };
-  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || rests_on_watts(motor, parameter))) {
+  const auto holds = [&](std::optional<Eigen::Index> place) { return component(parameter.exponents, place) != 0.0; };
+  if (!seen.has_heat && (holds(roles.resistance) || holds(roles.drag) || depends_on_heat(motor, parameter))) {
     return OpenReason::no_heat;
   }
   if (holds(roles.resistance)) {
@@ -230,7 +231,7 @@ void name_the_rest(const MotorModel& motor, const estimation::Fit& fit, const Lo
     if (reason == OpenReason::stator_not_settled) {
       const Roles roles = roles_of(motor.model);
       same->longest_run_s = seen.longest_s;
-      same->stator_s = std::exp(fit.theta[roles.stator_capacity] + fit.theta[roles.stator_ambient]);
+      same->stator_s = std::exp(component(fit.theta, roles.stator_capacity) + component(fit.theta, roles.stator_ambient));
     }
     same->parameters.push_back(parameter.name);
     same->left_sd = std::max(same->left_sd, std::sqrt(variance));
@@ -268,7 +269,7 @@ bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun>
   });
 }
 
-bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter) {
+bool depends_on_heat(const MotorModel& motor, const CalibratedValue& parameter) {
   const Roles roles = roles_of(motor.model);
   const double by_scale = component(parameter.exponents, roles.winding_capacity) - component(parameter.exponents, roles.winding_stator) +
                           component(parameter.exponents, roles.stator_capacity) - component(parameter.exponents, roles.stator_ambient);

@@ -12,8 +12,8 @@ namespace heatsoak::calibration {
 /// Returns true if the logged heat inputs of any run can warm the winding by at least 1 K.
 bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun> runs);
 
-/// Returns true if the parameter scales with a common factor on all heat. True for K/W and J/K, false for time constants.
-bool rests_on_watts(const MotorModel& motor, const CalibratedValue& parameter);
+/// Returns true if a common factor on all heat changes the parameter: values in K/W and J/K, not time constants.
+bool depends_on_heat(const MotorModel& motor, const CalibratedValue& parameter);
 
 /// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
 /// another reason. `parameters` must be in the order of motor.parameters.

@@ -7,7 +7,7 @@
 
 namespace heatsoak::calibration {
 
-/// Returns the loss at no-load speed in W; 0 if the motor file does not determine it.
+/// Returns the loss at no-load speed in W; 0 for a motor without no-load current.
 double most_loss_at_speed_W(const motor::Motor& motor);
 
 /// Returns the prior mean of that loss in W; with `is_driven` while current flows, else at other times.

@@ -14,14 +14,14 @@ namespace {
 /// Returns the byte offset of a place given in characters; npos if the text has no such place.
 std::size_t byte_at(std::string_view content, const base::Location& at) {
   std::size_t i = 0;
-  for (int line = 1; line < at.line; ++line) {
+  for (int line = 1; line < at.line.value(); ++line) {
     i = content.find('\n', i);
     if (i == std::string_view::npos) {
       return i;
     }
     ++i;
   }
-  for (int column = 1; column < at.column && i < content.size(); ++column) {
+  for (int column = 1; column < at.column.value() && i < content.size(); ++column) {
     ++i;
     while (i < content.size() && (static_cast<unsigned char>(content[i]) & 0xC0U) == 0x80U) {
       ++i;

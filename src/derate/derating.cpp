@@ -78,8 +78,8 @@ BarrierRules barrier_rules(const motor::Motor& motor, const robot::Robot& robot,
   rules.stator_approach_s = std::max(rules.approach_s, kWindingTimes * values.thermal_time_constant_winding_s);
   rules.hottest_ambient_C = options.hottest_ambient_C;
   // When braking at full speed, the back-EMF adds to the supply voltage.
-  rules.most_current_A = std::min(robot.drive.current_limit_A, 2.0 * robot.available_V() / loop_ohm);
-  rules.most_speed_rad_per_s = kPushed_ratio * std::min(full_V(robot), robot.drive.voltage_limit_V) / values.torque_constant_Nm_per_A;
+  rules.most_current_A = robot.drive.limited_A(2.0 * robot.available_V() / loop_ohm);
+  rules.most_speed_rad_per_s = kPushed_ratio * robot.drive.limited_V(full_V(robot)) / values.torque_constant_Nm_per_A;
   // Other firmware may use the full battery voltage of a driver whose command is limited here.
   rules.no_current_speed_rad_per_s =
       std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, kPushed_ratio * full_V(robot) / values.torque_constant_Nm_per_A);
@@ -98,9 +98,9 @@ void require_short_period(const thermal::Network& network, const robot::Robot& r
   thermal::OperatingPoint<thermal::Lanes> at;
   at.ambient_C = thermal::Lanes::Constant(options.hottest_ambient_C);
   at.current_rms_A = thermal::Lanes::Constant(rules.most_current_A);
-  const bool is_limited = std::isfinite(robot.drive.current_limit_A);
+  const bool is_limited = robot.drive.current_limit_A.has_value();
   // The guard accepts speeds up to less than this (belief.cpp).
-  const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
+  const double fastest_rad_per_s = std::max(2.0 * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s.value_or(0.0));
   at.speed_mean_rad_per_s = at.speed_rms_rad_per_s = thermal::Lanes::Constant(fastest_rad_per_s);
   const double longest_s = 0.2 * thermal::longest_step_s(network, parameters, at, rules.limits.winding_C - options.hottest_ambient_C);
   // At this current copper heats the winding so fast that the growth of its resistance shortens the time constant.
@@ -177,7 +177,7 @@ class Search {
     work_.begin(SearchWork::factor_of_promise);
     MotorVerdicts motors(motor_, reachable_.limits, goal, kStreamsApart, simulated());
     for (;;) {
-      const double found = smallest(from, kGrowth, motors, most_over(goal));
+      const double found = smallest(from, kGrowth, motors, most_over(goal).value());
       Attempt last = std::move(*last_);
       std::vector<UsePlayed> uses = all_uses(last);
       work_.begin(SearchWork::final_check);
@@ -209,7 +209,7 @@ class Search {
     BarrierRules rules = reachable_;
     rules.most_speed_rad_per_s = sustainable_speed_rad_per_s(observer, reachable_);
     if (rules.most_speed_rad_per_s < reachable_.most_speed_rad_per_s) {
-      rules.no_current_speed_rad_per_s = 0.0;
+      rules.no_current_speed_rad_per_s.reset();
     }
     constexpr double kLeastShare = 0.2;
     if (rules.most_speed_rad_per_s < kLeastShare * reachable_.most_speed_rad_per_s) {

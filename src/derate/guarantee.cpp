@@ -184,10 +184,11 @@ Guarantee check(const motor::Motor& motor, const TemperatureLimits& limits, std:
   return guarantee(all);
 }
 
-int most_over(const GuaranteeOptions& goal) {
-  int most = -1;
-  while (most < goal.samples && 1.0 - base::upper_bound_share(most + 1, goal.samples, kCertainty_share) >= goal.required_share) {
-    ++most;
+std::optional<int> most_over(const GuaranteeOptions& goal) {
+  std::optional<int> most;
+  for (int over = 0; over <= goal.samples && 1.0 - base::upper_bound_share(over, goal.samples, kCertainty_share) >= goal.required_share;
+       ++over) {
+    most = over;
   }
   return most;
 }

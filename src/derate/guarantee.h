@@ -105,8 +105,8 @@ struct Guarantee {
 };
 
 /// Returns the largest number of `samples` motors over a limit with which a single check shows the required share: its lower bound is
-/// one-sided with kCertainty_share and exact (Clopper and Pearson 1934). Returns -1 if the samples are too few.
-int most_over(const GuaranteeOptions& goal);
+/// one-sided with kCertainty_share and exact (Clopper and Pearson 1934). Empty if the samples are too few.
+std::optional<int> most_over(const GuaranteeOptions& goal);
 
 /// Summarises the peaks of drawn motors, at least one.
 Guarantee guarantee(std::span<const MotorPeak> peaks);

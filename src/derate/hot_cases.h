@@ -27,8 +27,8 @@ struct BarrierRules {
   double hottest_ambient_C = 40.0;
   double most_current_A = 0.0;        ///< current limit of the motor driver
   double most_speed_rad_per_s = 0.0;  ///< highest speed of the motor up to which the limits are kept
-  /// Speed at which the allowed current reaches 0, above the highest speed; 0: kSpeedFadeOut_ratio times the highest speed.
-  double no_current_speed_rad_per_s = 0.0;
+  /// Lower bound of the speed at which the allowed current reaches 0. It is at least kSpeedFadeOut_ratio times the highest speed.
+  std::optional<double> no_current_speed_rad_per_s = {};
   double most_vehicle_speed_m_per_s = 0.0;
 };
 

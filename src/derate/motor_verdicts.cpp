@@ -49,7 +49,7 @@ int MotorVerdicts::count_over(double safety_factor, std::span<const LoadPattern>
 std::optional<double> MotorVerdicts::expected_ratio(int most_over) const {
   std::vector<double> descending = limit_use_ratio_;
   std::ranges::sort(descending, std::greater<>());
-  const double use_ratio = most_over < 0 ? 0.0 : descending[std::min(static_cast<std::size_t>(most_over), descending.size() - 1)];
+  const double use_ratio = descending[std::min(static_cast<std::size_t>(most_over), descending.size() - 1)];
   return use_ratio > 0.0 && std::isfinite(use_ratio) ? std::optional(last_ratio_ * use_ratio) : std::nullopt;
 }
 

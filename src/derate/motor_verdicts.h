@@ -17,9 +17,9 @@ namespace heatsoak::derate {
 /// them, except for rounding: the integration step may differ, because other motors share a block.
 class MotorVerdicts {
  public:
-  /// Returns use `index` of the patterns, simulated with the guard for this safety factor.
+  /// Returns the use of the pattern with this index, simulated with the guard for the present safety factor.
   using Play = std::function<const UsePlayed&(std::size_t index)>;
-  /// Gets the number of motors that were simulated through one use since the last call.
+  /// Receives the number of motors that were simulated through one use since the last call.
   using Simulated = std::function<void(std::size_t motors)>;
 
   /// Draws options.samples motors from the random streams from `first_stream` on.

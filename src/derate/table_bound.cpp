@@ -232,7 +232,8 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   table.resistance_at_0C_ratio = static_cast<float>(base::resistance_ratio(observer.resistance_rise_per_K(), 0.0));
   table.most_current_A = static_cast<float>(rules.most_current_A);
   table.most_speed_rad_per_s = rules.most_speed_rad_per_s;
-  table.no_current_speed_rad_per_s = std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s);
+  table.no_current_speed_rad_per_s =
+      std::max(kSpeedFadeOut_ratio * rules.most_speed_rad_per_s, rules.no_current_speed_rad_per_s.value_or(0.0));
   // Points between those of the fine grid show a slightly larger shortfall, so each attempt tightens the goal on the grid.
   constexpr int kMostTries = 6;
   constexpr double kBetter = 0.75;

@@ -60,11 +60,11 @@ void TrackBuilder::see(const Detection& detection) {
     ++report().implausible;
     return;
   }
-  latest_s_ = std::max(latest_s_, detection.time_s);
+  latest_s_ = std::max(latest_s_.value_or(detection.time_s), detection.time_s);
   if (detection.time_s < options_.from_s || detection.time_s > options_.until_s) {
     return;
   }
-  first_s_ = std::isnan(first_s_) ? detection.time_s : std::min(first_s_, detection.time_s);
+  first_s_ = std::min(first_s_.value_or(detection.time_s), detection.time_s);
   Robot& robot = robots_[detection.robot];
   robot.track.robot = robot.summary.robot = detection.robot;
   if (!robot.frame.empty()) {
@@ -212,10 +212,11 @@ void TrackBuilder::place(Robot& robot, TrackPoint point) {
     return;
   }
   point.yaw_rad = expected_yaw_rad + wrapped(point.yaw_rad - expected_yaw_rad);
-  if (robot.usual_step_s > 0.0 && step_s > kMissingFrames * robot.usual_step_s) {
+  if (robot.usual_step_s && step_s > kMissingFrames * *robot.usual_step_s) {
     ++report().bridged_gaps;
   } else {
-    robot.usual_step_s = robot.usual_step_s > 0.0 ? robot.usual_step_s + 0.05 * (step_s - robot.usual_step_s) : step_s;
+    const double usual_s = robot.usual_step_s.value_or(step_s);
+    robot.usual_step_s = usual_s + 0.05 * (step_s - usual_s);
   }
   append(robot, point);
 }
@@ -282,16 +283,16 @@ void TrackBuilder::summarise(Robot& robot, const TrackPoint& point) {
   }
   const auto index = static_cast<std::int64_t>(std::floor(std::clamp(point.time_s, -1e9, 1e10) / kSummaryBin_s));
   auto& [oldest, middle, newest] = robot.bins;
-  if (newest.count > 0.0 && index != newest.index) {
+  if (newest && index != newest->index) {
     const auto mean = [](const Bin& bin) {
       return TrackPoint{bin.sum.time_s / bin.count, bin.sum.x_m / bin.count, bin.sum.y_m / bin.count, 0.0};
     };
-    if (middle.count > 0.0 && newest.index == middle.index + 1) {
-      const TrackPoint b = mean(middle);
-      const TrackPoint c = mean(newest);
+    if (middle && newest->index == middle->index + 1) {
+      const TrackPoint b = mean(*middle);
+      const TrackPoint c = mean(*newest);
       summary.path_m += std::hypot(c.x_m - b.x_m, c.y_m - b.y_m);
-      if (oldest.count > 0.0 && middle.index == oldest.index + 1) {
-        const TrackPoint a = mean(oldest);
+      if (oldest && middle->index == oldest->index + 1) {
+        const TrackPoint a = mean(*oldest);
         const auto second = [&](double pa, double pb, double pc) {
           return 2.0 * ((pc - pb) / (c.time_s - b.time_s) - (pb - pa) / (b.time_s - a.time_s)) / (c.time_s - a.time_s);
         };
@@ -301,13 +302,15 @@ void TrackBuilder::summarise(Robot& robot, const TrackPoint& point) {
     }
     oldest = middle;
     middle = newest;
-    newest = {};
+    newest.reset();
   }
-  newest.index = index;
-  newest.count += 1.0;
-  newest.sum.time_s += point.time_s;
-  newest.sum.x_m += point.x_m;
-  newest.sum.y_m += point.y_m;
+  if (!newest) {
+    newest.emplace(Bin{.index = index, .sum = {}});
+  }
+  newest->count += 1.0;
+  newest->sum.time_s += point.time_s;
+  newest->sum.x_m += point.x_m;
+  newest->sum.y_m += point.y_m;
 }
 
 void TrackBuilder::end_segment(Robot& robot) {
@@ -339,7 +342,7 @@ void TrackBuilder::cut() {
 }
 
 void TrackBuilder::phase(GamePhase phase) {
-  const double now_s = std::isfinite(latest_s_) ? latest_s_ : 0.0;
+  const double now_s = latest_s_.value_or(0.0);
   std::vector<PhaseSpan>& phases = game_.phases;
   if (!phases.empty() && phases.back().phase == phase) {
     return;
@@ -372,11 +375,11 @@ RecordedGame TrackBuilder::finish() {
       report().robots.push_back(robot.summary);
     }
   }
-  if (!std::isnan(first_s_)) {
-    report().span_s = std::min(latest_s_, options_.until_s) - first_s_;
+  if (first_s_) {
+    report().span_s = std::min(*latest_s_, options_.until_s) - *first_s_;
   }
   if (!game_.phases.empty()) {
-    game_.phases.back().end_s = std::max(game_.phases.back().begin_s, std::isfinite(latest_s_) ? latest_s_ : 0.0);
+    game_.phases.back().end_s = std::max(game_.phases.back().begin_s, latest_s_.value_or(0.0));
   }
   return std::move(game_);
 }

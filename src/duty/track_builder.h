@@ -19,7 +19,7 @@ class TrackBuilder final : public LogEvents {
   void phase(GamePhase phase) override;
   void cut() override;
   void problem(std::uint64_t at, const LogFault& fault) override;
-  [[nodiscard]] bool done() const override { return latest_s_ > options_.until_s; }
+  [[nodiscard]] bool done() const override { return latest_s_ && *latest_s_ > options_.until_s; }
   ImportReport& report() override { return game_.report; }
 
   /// Ends all tracks and returns the game. The builder must not be used afterwards.
@@ -41,7 +41,7 @@ class TrackBuilder final : public LogEvents {
   };
   /// Average over 0.1 s. The last three bins give an acceleration.
   struct Bin {
-    std::int64_t index = -1;
+    std::int64_t index = 0;
     double count = 0.0;
     TrackPoint sum;
   };
@@ -52,10 +52,10 @@ class TrackBuilder final : public LogEvents {
     std::vector<CameraOffset> offsets;
     TrackSegment segment;
     std::optional<TrackPoint> last;
-    Pose rate;                ///< smoothed velocity, for the expected position of the next point
-    double usual_step_s = 0;  ///< usual time between points; 0 until known
-    TrackSegment elsewhere;   ///< points out of reach: outliers, or a robot that was moved
-    std::array<Bin, 3> bins;
+    Pose rate;                           ///< smoothed velocity, for the expected position of the next point
+    std::optional<double> usual_step_s;  ///< usual time between points; empty before the second point
+    TrackSegment elsewhere;              ///< points out of reach: outliers, or a robot that was moved
+    std::array<std::optional<Bin>, 3> bins;
     std::uint64_t segment_points = 0;
     double segment_begin_s = 0.0;
   };
@@ -77,8 +77,8 @@ class TrackBuilder final : public LogEvents {
   const ImportOptions& options_;
   std::map<RobotName, Robot> robots_;
   RecordedGame game_;
-  double first_s_ = std::numeric_limits<double>::quiet_NaN();
-  double latest_s_ = -std::numeric_limits<double>::infinity();
+  std::optional<double> first_s_;   ///< time of the first detection within the imported range
+  std::optional<double> latest_s_;  ///< time of the latest plausible detection
   std::size_t stored_ = 0;
 };
 

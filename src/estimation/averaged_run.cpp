@@ -106,8 +106,8 @@ LinearisedRun Averaging::run() const {
   return out;
 }
 
-std::vector<Eigen::Index> Averaging::interval_of() const {
-  std::vector<Eigen::Index> interval(run_.duration_s.size(), -1);
+std::vector<std::optional<Eigen::Index>> Averaging::interval_of() const {
+  std::vector<std::optional<Eigen::Index>> interval(run_.duration_s.size());
   for (Eigen::Index segment = 0; segment + 1 < segments_; ++segment) {
     std::fill(interval.begin() + middle_of(segment), interval.begin() + middle_of(segment + 1), segment);
   }

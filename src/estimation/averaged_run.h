@@ -3,6 +3,7 @@
 // for temperatures that change over tens of seconds.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "estimation/whitening.h"
@@ -25,9 +26,9 @@ class Averaging {
   [[nodiscard]] const Eigen::VectorXd& weight() const { return weight_; }
   /// Averages columns with the rows of the original run (n·s) in the same way.
   [[nodiscard]] Columns average(const Columns& columns) const;
-  /// For each interval of the original run, the index of the averaged interval that contains it. -1 before the middle of the first segment
-  /// and after the middle of the last.
-  [[nodiscard]] std::vector<Eigen::Index> interval_of() const;
+  /// For each interval of the original run, the index of the averaged interval that contains it. Empty before the middle of the first
+  /// segment and after the middle of the last.
+  [[nodiscard]] std::vector<std::optional<Eigen::Index>> interval_of() const;
 
  private:
   [[nodiscard]] Eigen::Index middle_of(Eigen::Index segment) const;

@@ -1,6 +1,7 @@
 // The linearised runs as least squares: columns of all free parameters and candidates, and the residual.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,9 @@ struct DesignRun {
   SensorNoise noise;
   StartPrior start;
   Columns columns;
-  std::vector<Eigen::Index> active;       ///< indices of the columns that are not zero throughout the run, ascending
-  std::vector<Eigen::Index> interval_of;  ///< for each interval of the log, the index of the interval in `run`; -1: none
+  std::vector<Eigen::Index> active;  ///< indices of the columns that are not zero throughout the run, ascending
+  /// For each interval of the log, the index of the interval in `run` that contains it, if there is one.
+  std::vector<std::optional<Eigen::Index>> interval_of;
 };
 
 /// Gaussian prior of θ. The mean is relative to the present θ.

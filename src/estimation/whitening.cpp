@@ -139,9 +139,9 @@ void Whitening::predict(const Layout& layout, const Step& step, Matrix& covarian
 }
 
 template <class Matrix>
-void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
+void Whitening::add_unknown(std::optional<Eigen::Index> interval, Matrix& covariance) const {
   const auto gained_ratio = [interval](const std::vector<double>& forget_ratio) {
-    const double left = interval < 0 ? 0.0 : forget_ratio[static_cast<std::size_t>(interval)];
+    const double left = interval ? forget_ratio[static_cast<std::size_t>(*interval)] : 0.0;
     return 1.0 - left * left;
   };
   const double of_flux = gained_ratio(forget_ratio_);
@@ -149,9 +149,11 @@ void Whitening::add_unknown(Eigen::Index interval, Matrix& covariance) const {
     const double rms_W = flux_.rms_W[static_cast<std::size_t>(f)];
     covariance(run_->states + f, run_->states + f) += of_flux * rms_W * rms_W;
   }
-  const auto uncertainty = std::ranges::lower_bound(run_->state_uncertainties, interval, {}, &StateUncertainty::interval);
-  if (uncertainty != run_->state_uncertainties.end() && uncertainty->interval == interval) {
-    covariance.topLeftCorner(run_->states, run_->states) += uncertainty->covariance_K2;
+  if (interval) {
+    const auto uncertainty = std::ranges::lower_bound(run_->state_uncertainties, *interval, {}, &StateUncertainty::interval);
+    if (uncertainty != run_->state_uncertainties.end() && uncertainty->interval == *interval) {
+      covariance.topLeftCorner(run_->states, run_->states) += uncertainty->covariance_K2;
+    }
   }
   if (drifts_) {
     const double of_drift = gained_ratio(drift_forget_ratio_);
@@ -168,7 +170,7 @@ void Whitening::build(const Layout& layout, const SensorNoise& noise) {
   Matrix covariance = Matrix::Zero();
   Matrix moved = Matrix::Zero();
   std::array<double, Layout::kMost> learnt_K{};
-  add_unknown(-1, covariance);
+  add_unknown({}, covariance);
   // Logarithms are slow: take one of the product of many factors, as long as it neither overflows nor underflows.
   constexpr double kSmall = 1e-100;
   double determinant = 1.0;
@@ -319,7 +321,7 @@ FluxEstimate Whitening::smoothed_flux(const Eigen::VectorXd& residual_K) const {
   Eigen::VectorXd state = Eigen::VectorXd::Zero(size_);
   Dynamic covariance = Dynamic::Zero(size_, size_);
   Dynamic transition(size_, size_);
-  add_unknown(-1, covariance);
+  add_unknown({}, covariance);
   for (Eigen::Index k = 0; k < samples; ++k) {
     flux_W.col(k) = state.segment(x, q);
     flux_rows.middleCols(k * q, q) = covariance.middleCols(x, q);

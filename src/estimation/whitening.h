@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "estimation/linearised_run.h"
@@ -78,9 +79,10 @@ class Whitening {
   static void predict(const Layout& layout, const Step& step, Matrix& covariance, Matrix& moved);
   template <class Matrix>
   void set_transition(Eigen::Index interval, Matrix& transition) const;
-  /// Adds the variance that fluxes, drifts and unlogged inputs contribute during `interval`; −1: their stationary variance at the start.
+  /// Adds the variance that fluxes, drifts and unlogged inputs contribute during `interval`; without one, the stationary variance of fluxes
+  /// and drifts at the start.
   template <class Matrix>
-  void add_unknown(Eigen::Index interval, Matrix& covariance) const;
+  void add_unknown(std::optional<Eigen::Index> interval, Matrix& covariance) const;
   [[nodiscard]] int node_of(Eigen::Index sensor) const { return run_->sensor_node[static_cast<std::size_t>(sensor)]; }
   /// Index of a sensor's drift in the filter's state.
   [[nodiscard]] Eigen::Index drift_place(Eigen::Index sensor) const { return run_->states + run_->fluxes + sensor; }

@@ -94,8 +94,8 @@ double lowest_resistance_ohm(const robot::Robot& robot, const motor::MotorValues
 }
 
 double current_limit_A(const robot::Robot& robot, double geared_V_s_per_rad, double fastest_rad_per_s, double lowest_ohm) {
-  const double most_V = std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) + geared_V_s_per_rad * fastest_rad_per_s;
-  return std::min(robot.drive.current_limit_A, most_V / lowest_ohm);
+  const double most_V = robot.drive.limited_V(robot.battery.full_V.value()) + geared_V_s_per_rad * fastest_rad_per_s;
+  return robot.drive.limited_A(most_V / lowest_ohm);
 }
 
 void set_drive(const robot::Robot& robot, const motor::MotorValues& motor, const robot::BodyConfig& body, const CoreOptions& options,
@@ -119,7 +119,7 @@ void set_drive(const robot::Robot& robot, const motor::MotorValues& motor, const
   config.battery_full_V = single(robot.battery.full_V.value());
   config.battery_lowest_V = single(robot.battery.empty_V.value());
   config.battery_resistance_ohm = single(robot.battery.resistance_ohm.value());
-  config.voltage_limit_V = single(std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V));
+  config.voltage_limit_V = single(robot.drive.limited_V(robot.battery.full_V.value()));
   config.current_limit_A = single(most_A);
 }
 

@@ -89,7 +89,7 @@ std::string limitations(const robot::Robot& robot, const derate::Derating& derat
       "- The thermal guard is computed from the files, not measured on this robot: {} thermal data of the motor. Air up to {:.0f} °C.\n"
       "- The example has not been run on a board. Its default board functions have no sensors, so the core keeps all bridges open.\n",
       derating.data_quality, derating.rules.hottest_ambient_C);
-  text += std::isfinite(robot.drive.current_limit_A)
+  text += robot.drive.current_limit_A
               ? ""
               : "- The robot file has no current limit of the driver: only the battery bounds the current until the guard does.\n";
   for (const CoreNote& note : notes) {
@@ -121,9 +121,10 @@ Words words_for(const CoreSource& source, const std::vector<CoreNote>& notes) {
 
 void require_watched_period(double period_s) {
   if (period_s > kLongestWatched_s) {
-    throw base::Failure(base::ExitCode::bad_input,
-                        fmt::format("a control period of {:.4g} ms is too long for the watchdog of a generated core: expected at most {:.2f} ms",
-                                    1e3 * period_s, 1e3 * kLongestWatched_s));
+    throw base::Failure(
+        base::ExitCode::bad_input,
+        fmt::format("a control period of {:.4g} ms is too long for the watchdog of a generated core: expected at most {:.2f} ms",
+                    1e3 * period_s, 1e3 * kLongestWatched_s));
   }
 }
 

@@ -149,8 +149,8 @@ void judge(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights
   found.r2_ratio = variance_V2 > 0.0 ? std::optional(1.0 - error_V2 / variance_V2) : std::nullopt;
 }
 
-WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const int> heading, const robot::Kinematics& kinematics, int wheel,
-                        const FitSettings& settings, Eigen::VectorXd& weights) {
+WheelFriction fit_wheel(const WheelPoints& wheel_points, std::span<const std::optional<int>> heading, const robot::Kinematics& kinematics,
+                        int wheel, const FitSettings& settings, Eigen::VectorXd& weights) {
   const std::vector<WheelPoint>& points = wheel_points.points;
   WheelFriction found;
   found.parts_standing = wheel_points.standing;
@@ -260,13 +260,13 @@ StraightLine straight_line(const std::vector<const SteadyPart*>& parts, int whee
 
 /// Straight lines of all headings of a wheel. One heading has too few legs, so the scatter is estimated from all headings.
 std::vector<HeadingLine> lines_of(const std::vector<WheelPoint>& points, const Eigen::VectorXd& weights,
-                                  const std::vector<SteadyPart>& parts, const std::vector<int>& numbers, int wheel,
+                                  const std::vector<SteadyPart>& parts, const std::vector<std::optional<int>>& numbers, int wheel,
                                   const WheelFriction& found) {
   std::map<int, std::vector<const SteadyPart*>> by_heading;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const int number = numbers[static_cast<std::size_t>(points[i].part - parts.data())];
-    if (number >= 0 && weights(static_cast<Eigen::Index>(i)) > 0.0) {
-      by_heading[number].push_back(points[i].part);
+    const std::optional<int> number = numbers[static_cast<std::size_t>(points[i].part - parts.data())];
+    if (number && weights(static_cast<Eigen::Index>(i)) > 0.0) {
+      by_heading[*number].push_back(points[i].part);
     }
   }
   std::vector<StraightLine> straight;
@@ -311,7 +311,17 @@ bool FrictionFit::is_learned() const {
   return std::ranges::any_of(wheels, [](const WheelFriction& wheel) { return wheel.is_learned(); });
 }
 
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings) {
+namespace {
+
+/// Number of distinct headings. An absent number is smaller than every other.
+int heading_count(std::span<const std::optional<int>> numbers) {
+  const auto last = std::ranges::max_element(numbers);
+  return last != numbers.end() && *last ? **last + 1 : 0;
+}
+
+}  // namespace
+
+std::vector<std::optional<int>> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings) {
   std::vector<std::size_t> order(parts.size());
   std::iota(order.begin(), order.end(), 0U);
   std::erase_if(order, [&](std::size_t i) { return parts[i].is_rotation || !is_used(parts[i], settings); });
@@ -319,12 +329,12 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const Fit
     return wrapped_rad(parts[i].heading_rad + kSameHeading_rad / 2.0);
   };  // so that 0° and −0° are one heading
   std::ranges::stable_sort(order, {}, turn_rad);
-  std::vector<int> numbers(parts.size(), -1);
-  int number = -1;
+  std::vector<std::optional<int>> numbers(parts.size());
+  std::optional<int> number;
   double first_rad = 0.0;
   for (const std::size_t i : order) {
-    if (number < 0 || turn_rad(i) - first_rad > kSameHeading_rad) {
-      ++number;
+    if (!number || turn_rad(i) - first_rad > kSameHeading_rad) {
+      number = number ? *number + 1 : 0;
       first_rad = turn_rad(i);
     }
     numbers[i] = number;
@@ -334,12 +344,12 @@ std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const Fit
 
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, const FitSettings& settings) {
   FrictionFit found;
-  const std::vector<int> numbers = heading_numbers(parts, settings);
-  found.headings = parts.empty() ? 0 : *std::ranges::max_element(numbers) + 1;
+  const std::vector<std::optional<int>> numbers = heading_numbers(parts, settings);
+  found.headings = heading_count(numbers);
   for (int wheel = 0; wheel < kinematics.wheel_count; ++wheel) {
     const WheelPoints points = points_of(parts, kinematics, wheel, settings);
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points.points.size()));
-    std::vector<int> heading;
+    std::vector<std::optional<int>> heading;
     std::ranges::transform(points.points, std::back_inserter(heading),
                            [&](const WheelPoint& point) { return numbers[static_cast<std::size_t>(point.part - parts.data())]; });
     found.wheels.push_back(fit_wheel(points, heading, kinematics, wheel, settings, weights));
@@ -360,13 +370,13 @@ std::optional<double> rms(double sum_of_squares, double count) {
 HeldOutError error_on_held_out_headings(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics,
                                         const FitSettings& settings, const ExpectedVoltages& before) {
   HeldOutError error;
-  const std::vector<int> numbers = heading_numbers(parts, settings);
+  const std::vector<std::optional<int>> numbers = heading_numbers(parts, settings);
   std::vector<SteadyPart> taught;
   std::vector<SteadyPart> held_out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    (numbers[i] >= 0 && numbers[i] % 3 == 2 ? held_out : taught).push_back(parts[i]);
-    error.all_headings = std::max(error.all_headings, numbers[i] + 1);
+    (numbers[i] && *numbers[i] % 3 == 2 ? held_out : taught).push_back(parts[i]);
   }
+  error.all_headings = heading_count(numbers);
   error.headings = error.all_headings / 3;
   FitSettings values_only = settings;
   values_only.phase_uncertainty_rad = 0.0;  // affects only intervals; if a and b are indistinguishable, the prediction is not worse

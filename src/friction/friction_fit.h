@@ -81,8 +81,9 @@ struct FitSettings {
   double phase_uncertainty_rad = 10.0 * std::numbers::pi / 180.0;
 };
 
-/// Returns the heading number of each part; −1 for rotation and for legs that are not used. Headings within 2.5° of each other are one.
-std::vector<int> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
+/// Returns the heading number of each part, counted from 0; empty for rotation and for legs that are not used. Headings within 2.5° of each
+/// other are one.
+std::vector<std::optional<int>> heading_numbers(const std::vector<SteadyPart>& parts, const FitSettings& settings);
 
 /// Fits every wheel. A wheel whose parts do not determine its terms gets a reason in WheelFriction::problem.
 FrictionFit fit_friction(const std::vector<SteadyPart>& parts, const robot::Kinematics& kinematics, const FitSettings& settings);

@@ -22,19 +22,26 @@ using LeftByGroup = std::map<int, std::vector<double>>;
 
 struct RepeatGroups {
   Repeats kind = Repeats::legs_on_one_heading;
-  std::vector<int> group;  ///< per point
-  std::vector<int> repeat;
+  std::vector<std::optional<int>> group;  ///< per point; empty: in no group
+  std::vector<std::optional<int>> repeat;
 };
 
 /// Possible kinds of repeats, best first. Neighbouring headings also differ slightly by the error of the law itself.
-std::vector<RepeatGroups> repeats_of(const std::vector<WheelPoint>& points, std::span<const int> heading) {
-  const std::vector<int> headings(heading.begin(), heading.end());
-  std::vector<int> legs(points.size()), parts(points.size()), pairs(points.size());
-  const std::set<int> driven(headings.begin(), headings.end());
+std::vector<RepeatGroups> repeats_of(const std::vector<WheelPoint>& points, std::span<const std::optional<int>> heading) {
+  const std::vector<std::optional<int>> headings(heading.begin(), heading.end());
+  std::vector<std::optional<int>> legs(points.size()), parts(points.size()), pairs(points.size());
+  std::set<int> driven;
+  for (const std::optional<int>& each : headings) {
+    if (each) {
+      driven.insert(*each);
+    }
+  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     legs[i] = points[i].part->leg;
     parts[i] = static_cast<int>(i);
-    pairs[i] = headings[i] < 0 ? -1 : static_cast<int>(std::distance(driven.upper_bound(-1), driven.find(headings[i]))) / 2;
+    if (headings[i]) {
+      pairs[i] = static_cast<int>(std::distance(driven.begin(), driven.find(*headings[i]))) / 2;
+    }
   }
   return {{Repeats::legs_on_one_heading, headings, legs},
           {Repeats::speeds_of_one_leg, headings, parts},
@@ -42,10 +49,10 @@ std::vector<RepeatGroups> repeats_of(const std::vector<WheelPoint>& points, std:
 }
 
 LeftByGroup left_by_group(const RepeatGroups& repeats, const Eigen::VectorXd& left_V, const Eigen::VectorXd& weights) {
-  std::map<std::pair<int, int>, std::vector<double>> units;
+  std::map<std::pair<int, std::optional<int>>, std::vector<double>> units;
   for (std::size_t i = 0; i < repeats.group.size(); ++i) {
-    if (repeats.group[i] >= 0 && weights(static_cast<Eigen::Index>(i)) > 0.0) {
-      units[{repeats.group[i], repeats.repeat[i]}].push_back(left_V(static_cast<Eigen::Index>(i)));
+    if (repeats.group[i] && weights(static_cast<Eigen::Index>(i)) > 0.0) {
+      units[{*repeats.group[i], repeats.repeat[i]}].push_back(left_V(static_cast<Eigen::Index>(i)));
     }
   }
   LeftByGroup found;
@@ -109,7 +116,7 @@ Eigen::MatrixXd missing_harmonics(const std::vector<WheelPoint>& points) {
 
 }  // namespace
 
-LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int> heading, const WheelRegression& asked,
+LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const std::optional<int>> heading, const WheelRegression& asked,
                       const std::vector<WheelTerm>& terms, const RobustFit& fit) {
   const Eigen::VectorXd left_V = asked.voltage_V - asked.X * fit.coefficients;
   const auto has = [&](WheelTerm term) { return std::ranges::find(terms, term) != terms.end() ? 1.0 : 0.0; };

@@ -1,6 +1,7 @@
 // Tests whether the residuals of the friction fit depend on the direction of travel, and widens the intervals accordingly.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "friction/wheel_terms.h"
@@ -13,8 +14,8 @@ namespace heatsoak::friction {
 // estimate that part, the error is modelled as second and third harmonic of the heading (the lowest that the law lacks) with any phase,
 // scaled to the visible residuals.
 
-/// Tests the residuals of `fit`. `heading` has the heading number of each point, −1 for rotation. Points with weight 0 do not count.
-LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const int> heading, const WheelRegression& asked,
+/// Tests the residuals of `fit`. `heading` has the heading number of each point; empty for rotation. Points with weight 0 do not count.
+LackOfFit lack_of_fit(const std::vector<WheelPoint>& points, std::span<const std::optional<int>> heading, const WheelRegression& asked,
                       const std::vector<WheelTerm>& terms, const RobustFit& fit);
 
 /// Adds to the covariance of `fit` the effect of a heading-dependent error with RMS value `left_V`. No effect if `left_V` is 0.

@@ -121,7 +121,7 @@ void set_damping(Lines& lines, const robot::Robot& robot, const std::string& ent
     lines.insert(end_of_friction(lines, robot), entry);
     return;
   }
-  const auto first = lines.begin() + (place->second.at.line - 1);
+  const auto first = lines.begin() + (place->second.at.line.value() - 1);
   const auto end = end_of_entry(lines, first);
   if (end == first || !std::regex_search(*first, std::regex(R"(^\s*wheel_damping\s*=)"))) {
     throw other_form(robot, "friction");
@@ -230,7 +230,7 @@ std::string with_measured_friction(const std::string& text, const robot::Robot& 
   const auto old_rotation = robot.parameters.find("friction.heading.rotation");
   Lines rotation_lines;
   if (old_rotation != robot.parameters.end()) {
-    const auto first = lines.begin() + (old_rotation->second.at.line - 1);
+    const auto first = lines.begin() + (old_rotation->second.at.line.value() - 1);
     const auto end = end_of_entry(lines, first);
     rotation_lines.assign(first, end == first ? first + 1 : end);
   }

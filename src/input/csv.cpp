@@ -325,14 +325,14 @@ std::vector<base::Diagnostic> with_characters(std::vector<base::Diagnostic> of_c
   std::string text;
   int line = 0;
   for (base::Diagnostic& each : of_cells) {
-    if (each.at.column <= 1 || each.at.line < 1) {
+    if (!each.at.line || !each.at.column || *each.at.column <= 1) {
       continue;
     }
-    if (line == 0 || each.at.line < line) {
+    if (line == 0 || *each.at.line < line) {
       file = std::ifstream(each.at.file, std::ios::binary);
       line = 0;
     }
-    for (; line < each.at.line && std::getline(file, text); ++line) {
+    for (; line < *each.at.line && std::getline(file, text); ++line) {
     }
     if (line == 1 && text.starts_with(kByteOrderMark)) {
       text.erase(0, kByteOrderMark.size());
@@ -340,13 +340,13 @@ std::vector<base::Diagnostic> with_characters(std::vector<base::Diagnostic> of_c
     int cell = 1;
     int character = 1;
     bool quoted = false;
-    for (std::size_t i = 0; i < text.size() && cell < each.at.column; ++i) {
+    for (std::size_t i = 0; i < text.size() && cell < *each.at.column; ++i) {
       quoted = quoted != (text[i] == '"');
       cell += text[i] == ',' && !quoted ? 1 : 0;
       character += (text[i] & 0xC0) != 0x80 ? 1 : 0;
     }
     // A row that spans several lines is reported at the beginning of its first line.
-    each.at.column = cell == each.at.column ? character : 1;
+    each.at.column = cell == *each.at.column ? character : 1;
   }
   return of_cells;
 }

@@ -14,14 +14,17 @@ constexpr std::size_t kLargestToml_bytes = 1'000'000;
 constexpr std::size_t kMostKeys = 1000;  ///< per table, because looking up a key is a linear search
 constexpr int kMostDots = 16;            ///< per key
 
-base::Location place(const toml::node& node, const std::string& file) {
-  const toml::source_position at = node.source().begin;
+/// The parser's position is 0 for nodes that stand nowhere in the text, such as the table of a dotted key.
+base::Location place(const toml::source_position& at, const std::string& file) {
+  if (!at) {
+    return {file};
+  }
   return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
 }
 
-/// Returns the first line with a key of more than kMostDots dots, or 0. toml++ limits nested values but not dotted keys: the recursive
-/// destructor of a.a.a.a… would overflow the stack. Outside of strings and comments only keys and numbers have dots.
-int line_of_deep_key(std::string_view content) {
+/// Returns the first line with a key of more than kMostDots dots, if there is one. toml++ limits nested values but not dotted keys: the
+/// recursive destructor of a.a.a.a… would overflow the stack. Outside of strings and comments only keys and numbers have dots.
+std::optional<int> line_of_deep_key(std::string_view content) {
   int line = 1;
   int dots = 0;
   for (std::size_t i = 0; i < content.size(); ++i) {
@@ -34,7 +37,7 @@ int line_of_deep_key(std::string_view content) {
         line += content[i] == '\n' ? 1 : 0;
         i += c == '"' && content[i] == '\\' ? 1 : 0;
         if (i < content.size() && content[i] == '\n' && quotes.size() == 1) {
-          return 0;  // not closed; the parser reports it
+          return std::nullopt;  // not closed; the parser reports it
         }
       }
       i += quotes.size() - 1;
@@ -47,12 +50,12 @@ int line_of_deep_key(std::string_view content) {
       line += c == '\n' ? 1 : 0;
     }
   }
-  return 0;
+  return std::nullopt;
 }
 
 Value convert(const toml::node& node, const std::string& file) {
   Value value;
-  value.at = place(node, file);
+  value.at = place(node.source().begin, file);
   if (const auto* table = node.as_table()) {
     value.kind = Value::Kind::table;
     if (table->size() > kMostKeys) {
@@ -84,12 +87,12 @@ Value convert(const toml::node& node, const std::string& file) {
   return value;
 }
 
-/// Returns the last line that begins with a key of that name, or 0 if there is none.
-int line_of_key(const toml::table& table, std::string_view name) {
-  int line = 0;
+/// Returns the last line that begins with a key of that name, if there is one.
+std::optional<int> line_of_key(const toml::table& table, std::string_view name) {
+  std::optional<int> line;
   for (const auto& [key, member] : table) {
     if (key.str() == name) {
-      line = std::max(line, static_cast<int>(key.source().begin.line));
+      line = std::max(line, std::optional(static_cast<int>(key.source().begin.line)));
     }
     if (const toml::table* inner = member.as_table(); inner && !inner->is_inline()) {
       line = std::max(line, line_of_key(*inner, name));
@@ -111,14 +114,14 @@ std::string explanation(const toml::parse_error& error, std::string_view content
   for (std::size_t line = 1; line < error.source().begin.line && end < content.size(); ++line) {
     end = std::min(content.find('\n', end), content.size() - 1) + 1;
   }
-  int first_line = 0;
+  std::optional<int> first_line;
   try {
     first_line = line_of_key(toml::parse(content.substr(0, end)), path.substr(path.rfind('.') + 1));
   } catch (const toml::parse_error&) {
     // The text before the second key ends inside a table or string. The message then omits the line of the first key.
   }
   return fmt::format("not valid TOML: '{}' is given twice{}; keep one of the two", path,
-                     first_line > 0 ? fmt::format(", first in line {}", first_line) : "");
+                     first_line ? fmt::format(", first in line {}", *first_line) : "");
 }
 
 }  // namespace
@@ -173,7 +176,7 @@ Value parse_toml(const std::string& content, const std::string& file) {
   if (content.find('\0') != std::string::npos) {
     throw base::bad_input({file}, "", "cannot be read: it is a binary file; expected TOML text");
   }
-  if (const int line = line_of_deep_key(content); line > 0) {
+  if (const std::optional<int> line = line_of_deep_key(content)) {
     throw base::bad_input({file, line, 1}, "", fmt::format("a key of more than {} dots, which no file of this kind has", kMostDots));
   }
   try {
@@ -182,8 +185,7 @@ Value parse_toml(const std::string& content, const std::string& file) {
     root.at = {file, 1, 1};
     return root;
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw base::bad_input({file, static_cast<int>(at.line), static_cast<int>(at.column)}, "", explanation(error, content));
+    throw base::bad_input(place(error.source().begin, file), "", explanation(error, content));
   }
 }
 

@@ -17,7 +17,7 @@ namespace lint_checks {
 
 void Findings::add(LintFinding::Level level, std::string_view key, LintClause what) {
   const auto parameter = motor_.parameters.find(key);
-  base::Location at = parameter != motor_.parameters.end() ? parameter->second.at : base::Location{motor_.file.string(), 0, 0};
+  base::Location at = parameter != motor_.parameters.end() ? parameter->second.at : base::Location{motor_.file.string()};
   add_at(level, std::move(at), std::move(what));
 }
 
@@ -152,7 +152,7 @@ void add_lint_errors(const Motor& motor, base::Diagnostics& diagnostics) {
     checked.effects.clear();
     checked.sensors.clear();
   }
-  std::set<int> lines;
+  std::set<std::optional<int>> lines;
   for (const base::Diagnostic& each : diagnostics.list()) {
     lines.insert(each.at.line);
   }

@@ -27,8 +27,9 @@ std::string shown_value(double value, std::string_view unit) {
 /// Formats a change of the robot: "jerk limit from 20 m/s³ to 10 m/s³".
 std::string change_words(const select::ChangeEffect& change) {
   const std::string_view unit = select::unit_of(change.quantity);
-  return fmt::format("{} from {} to {}", select::name_of(change.quantity), shown_value(change.before, unit),
-                     shown_value(change.before * change.factor, unit));
+  const double before = change.before.value();
+  return fmt::format("{} from {} to {}", select::name_of(change.quantity), shown_value(before, unit),
+                     shown_value(before * change.factor, unit));
 }
 
 /// Returns whether the motor needs the change to deliver the demand, or whether its effect is larger than its own scatter.
@@ -123,11 +124,13 @@ void add_changes(Document& document, const simulate::SuggestedChanges& changes, 
     }
   }
   document.tables.push_back(std::move(table));
-  document.add_note(Severity::background,
-                    is_drawn ? fmt::format("Changes: mean of {} games with nominal values, each driven with and without the change; ± is "
-                                           "two standard errors.",
-                                           select::kChangeGames)
-                             : "Changes: the duty with nominal values, once with and once without the change.");
+  document.add_note(
+      Severity::background,
+      is_drawn
+          ? fmt::format("The effect of a change is the mean difference of the winding's peak over {} games with nominal values, each "
+                        "with and without it; ± is two standard errors.",
+                        select::kChangeGames)
+          : "The effect of a change is the difference of the winding's peak between the duty with and without it, with nominal values.");
 }
 
 }  // namespace heatsoak::present

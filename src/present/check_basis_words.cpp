@@ -66,8 +66,7 @@ std::string say(const check::GuardChargeBasis& of, const check::Outcome& /*outco
 }
 
 std::string say(const check::LintBasis& of, const check::Outcome& /*outcome*/) {
-  const base::Location& at = of.first.at;
-  return fmt::format("{}:{}:{}: {}", at.file, at.line, at.column, motor::words_of(of.first));
+  return fmt::format("{}: {}", base::to_string(of.first.at), motor::words_of(of.first));
 }
 
 std::string say(const check::RankBasis& of, const check::Outcome& /*outcome*/) {

@@ -26,8 +26,8 @@ Json json(const check::Outcome& each) {
           {"detail", basis_words(each)},
           {"limit_before", each.before.empty() ? Json() : Json(each.before)},
           {"file", each.limit.at.file},
-          {"line", each.limit.at.line},
-          {"column", each.limit.at.column}};
+          {"line", each.limit.at.line.value_or(0)},
+          {"column", each.limit.at.column.value_or(0)}};
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string say(const check::Failed& of, const check::Limit& /*limit*/) {
   const base::Failure failure = worded(of);
   std::string text = failure.message();
   for (const base::Diagnostic& each : failure.diagnostics()) {
-    const std::string place = each.at.line > 0 ? fmt::format("{}:{}:{}", each.at.file, each.at.line, each.at.column) : each.at.file;
+    const std::string place = base::to_string(each.at);
     text += fmt::format("{}{}{}{}{}{}", text.empty() ? "" : "; ", place, place.empty() ? "" : ": ", each.key, each.key.empty() ? "" : ": ",
                         each.message);
   }
@@ -152,7 +152,7 @@ std::string say(const check::NumberIsCount& of, const check::Limit& limit) {
 
 std::string say(const check::IntervalUnbounded& of, const check::Limit& limit) {
   return fmt::format(
-      "the {:.3g} % interval of '{}' has no {} end, because the answer rests on too few samples; expected more of them (--samples of the "
+      "the {:.3g} % interval of '{}' has no {} end, because the answer has too few samples; expected more of them (--samples of the "
       "command)",
       100.0 * (1.0 - select::kError_share), of.name, limit.type->direction == check::Bound::at_most ? "upper" : "lower");
 }
@@ -167,16 +167,13 @@ base::Location place_of(const check::Outcome& outcome) {
     return outcome.limit.at;
   }
   const base::Failure failure = worded(*failed);
-  const bool begins_with_place = failure.message().empty() && !failure.diagnostics().empty() && failure.diagnostics().front().at.line > 0;
+  const bool begins_with_place = failure.message().empty() && !failure.diagnostics().empty() && failure.diagnostics().front().at.line;
   return begins_with_place ? failure.diagnostics().front().at : outcome.limit.at;
 }
 
 namespace {
 
-std::string place_words(const check::Outcome& outcome) {
-  const base::Location at = place_of(outcome);
-  return fmt::format("{}:{}:{}: ", at.file, at.line, at.column);
-}
+std::string place_words(const check::Outcome& outcome) { return fmt::format("{}: ", base::to_string(place_of(outcome))); }
 
 }  // namespace
 

@@ -32,7 +32,8 @@ Json closed_loop_json(const simulate::ClosedLoopRank& rank, std::uint64_t seed) 
               {"lowest_battery_V", json(drives.spread(&simulate::DriveScore::lowest_battery_V), 3)},
               {"battery_empty_s", json(drives.spread(&simulate::DriveScore::battery_empty_s), 3)}};
   answer["guard_limited_s"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_limited_s), 3) : Json();
-  answer["guard_winding_peak_C"] = drives.is_guarded ? json(drives.spread(&simulate::DriveScore::guard_winding_peak_C), 2) : Json();
+  const std::optional<simulate::GameSpread> observer_C = drives.spread(&simulate::DriveScore::guard_winding_peak_C);
+  answer["guard_winding_peak_C"] = observer_C ? json(*observer_C, 2) : Json();
   answer["why_no_guard"] = drives.why_no_guard ? Json(drives.why_no_guard->message()) : Json();
   return base::with_ranges(std::move(answer), {{"current_rms_A", base::kNotNegative},
                                                {"distance_m", base::kNotNegative},

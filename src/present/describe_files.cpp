@@ -107,14 +107,13 @@ Document robot_description(const robot::Robot& robot) {
                fmt::format("{}, gear {}:1, {} commutation", robot.drive.motor, base::significant(robot.drive.gear_ratio, 3),
                            robot.drive.commutation == robot::Commutation::block ? "block" : "sinusoidal"));
   add_labelled(table, "battery", with_unit(robot.battery.nominal_V, "V"));
-  add_labelled(table, "driver",
-               fmt::format("{}{}",
-                           std::isfinite(robot.drive.voltage_limit_V)
-                               ? fmt::format("command at most {} V, ", base::significant(robot.drive.voltage_limit_V, 4))
-                               : "",
-                           std::isfinite(robot.drive.current_limit_A)
-                               ? fmt::format("at most {} A", base::significant(robot.drive.current_limit_A, 4))
-                               : "no current limit"));
+  add_labelled(
+      table, "driver",
+      fmt::format(
+          "{}{}",
+          robot.drive.voltage_limit_V ? fmt::format("command at most {} V, ", base::significant(*robot.drive.voltage_limit_V, 4)) : "",
+          robot.drive.current_limit_A ? fmt::format("at most {} A", base::significant(*robot.drive.current_limit_A, 4))
+                                      : "no current limit"));
   add_labelled(table, "source", robot.source);
   document.tables.push_back(std::move(table));
   if (!robot.parameters.empty()) {

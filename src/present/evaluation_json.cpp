@@ -84,11 +84,11 @@ Json json(const select::MotorEvaluation& each) {
 Json changes_json(const simulate::SuggestedChanges& changes) {
   Json all = Json::array();
   for (const select::ChangeEffect& each : changes.effects) {
-    const bool is_value = each.other_motor.empty();
+    const bool is_value = each.before.has_value();
     all.push_back({{"quantity", select::name_of(each.quantity)},
                    {"unit", select::unit_of(each.quantity)},
                    {"from", is_value ? rounded(each.before, 6) : Json(changes.motor_id)},
-                   {"to", is_value ? rounded(each.before * each.factor, 6) : Json(each.other_motor)},
+                   {"to", is_value ? rounded(*each.before * each.factor, 6) : Json(each.other_motor)},
                    {"saved_K", rounded(each.saved_K, 2)},
                    {"standard_error_K", each.standard_error_K ? rounded(*each.standard_error_K, 2) : Json()},
                    {"deliverable", each.is_deliverable}});

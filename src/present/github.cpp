@@ -58,8 +58,8 @@ std::string annotation(const base::Location& at, const std::filesystem::path& wo
     const std::filesystem::path inside = std::filesystem::proximate(file, workspace, unreachable);
     file = unreachable || inside.string().starts_with("..") ? file : inside;
   }
-  return fmt::format("::error file={},line={},col={},title={}::{}\n", escaped_command(file.string(), true), std::max(1, at.line),
-                     std::max(1, at.column), escaped_command(title, true), escaped_command(message, false));
+  return fmt::format("::error file={},line={},col={},title={}::{}\n", escaped_command(file.string(), true), at.line.value_or(1),
+                     at.column.value_or(1), escaped_command(title, true), escaped_command(message, false));
 }
 
 std::string annotations(std::span<const check::Outcome> outcomes, const std::filesystem::path& workspace) {

@@ -43,8 +43,11 @@ std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::
 Json failure_json(const base::Failure& failure) {
   Json diagnostics = Json::array();
   for (const base::Diagnostic& each : failure.diagnostics()) {
-    diagnostics.push_back(
-        {{"file", each.at.file}, {"line", each.at.line}, {"column", each.at.column}, {"key", each.key}, {"message", each.message}});
+    diagnostics.push_back({{"file", each.at.file},
+                           {"line", each.at.line.value_or(0)},
+                           {"column", each.at.column.value_or(0)},
+                           {"key", each.key},
+                           {"message", each.message}});
   }
   if (diagnostics.empty()) {
     std::istringstream lines(failure.message());

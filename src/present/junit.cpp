@@ -41,7 +41,7 @@ std::string suite_begin(std::string_view name, const check::OutcomeCounts& count
 std::string test_case(const check::Outcome& each) {
   std::string text =
       fmt::format(R"(    <testcase name="{}" classname="{}" file="{}" line="{}")", base::xml_attribute(each.limit.type->name),
-                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line);
+                  base::xml_attribute(each.check->name), base::xml_attribute(each.limit.at.file), each.limit.at.line.value_or(0));
   const std::string facts =
       fmt::format("value {}, limit {}, margin {}\n{}", value_words(each), limit_words(each), margin_words(each), basis_words(each));
   if (each.passed()) {
@@ -51,7 +51,7 @@ std::string test_case(const check::Outcome& each) {
   const base::Location at = place_of(each);
   return text + fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\">{3}:{4}: {5}</{0}>\n    </testcase>\n", element,
                             each.measured ? "limit_exceeded" : "not_evaluated", base::xml_attribute(reason_words(each)),
-                            base::xml_attribute(at.file), at.line, base::xml_attribute(facts));
+                            base::xml_attribute(at.file), at.line.value_or(0), base::xml_attribute(facts));
 }
 
 /// Returns one test suite per check.

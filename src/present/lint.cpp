@@ -23,11 +23,10 @@ Document lint_document(const duty::FilesLint& lint) {
   std::vector<std::string> on_estimates;
   for (const motor::LintFinding& each : lint.findings) {
     if (each.level != motor::LintFinding::Level::note) {
-      listing.lines += fmt::format("{}:{}:{}: {}: {}\n", each.at.file, each.at.line, each.at.column, motor::to_string(each.level),
-                                   motor::words_of(each));
+      listing.lines += fmt::format("{}: {}: {}\n", base::to_string(each.at), motor::to_string(each.level), motor::words_of(each));
       continue;
     }
-    std::string words = fmt::format("{}:{}: {}", each.at.file, each.at.line, motor::words_of(each));
+    std::string words = fmt::format("{}: {}", base::to_string(base::Location{each.at.file, each.at.line}), motor::words_of(each));
     if (each.check == motor::kEstimatesCheck) {
       on_estimates.push_back(std::move(words));
     } else {

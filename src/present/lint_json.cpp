@@ -8,8 +8,8 @@ Json lint_json(const duty::FilesLint& lint) {
   Json findings = Json::array();
   for (const motor::LintFinding& each : lint.findings) {
     findings.push_back({{"file", each.at.file},
-                        {"line", each.at.line},
-                        {"column", each.at.column},
+                        {"line", each.at.line.value_or(0)},
+                        {"column", each.at.column.value_or(0)},
                         {"level", motor::to_string(each.level)},
                         {"check", each.check},
                         {"key", each.key},

@@ -130,7 +130,7 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
             simulate::kGuardUses[static_cast<std::size_t>(answer.guard_use)], duty::to_string(each.planner), what,
             duration_text(score.time_s),
             answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.guard.guard->model().hottest_ambient_C),
-            score.guard_winding_peak_C));
+            score.guard_winding_peak_C.value()));
   }
 }
 

@@ -15,8 +15,8 @@ void add_robot_notes(Document& document, const robot::Robot& robot) {
   for (const motor::LintFinding& each : robot::implausible_values(robot)) {
     if (each.level == motor::LintFinding::Level::warning) {
       keys.push_back(each.key);
-      document.add_note(Severity::warning,
-                        fmt::format("The answer is wrong if this value is: {}:{}: {}", each.at.file, each.at.line, motor::words_of(each)));
+      document.add_note(Severity::warning, fmt::format("The answer is wrong if this value is: {}: {}",
+                                                       base::to_string(base::Location{each.at.file, each.at.line}), motor::words_of(each)));
     }
   }
   // The short form of an answer shows no notes.

@@ -85,7 +85,7 @@ std::string why_infeasible(const select::MotorEvaluation& motor, const robot::Ro
   const std::string what =
       motor.limiting_factor == select::LimitingFactor::voltage
           ? fmt::format("needs up to {:.1f} V when hot, {:.1f} V are available:", motor.highest_voltage_V, robot.available_V())
-          : fmt::format("the driver's {:.1f} A are", robot.drive.current_limit_A);
+          : fmt::format("the driver's {:.1f} A are", robot.drive.current_limit_A.value());
   return fmt::format("{}: {} {:.0f} % of the demanded current at the worst moment, too little for {:.0f} % of the time\n", motor.motor_id,
                      what, 100.0 * motor.least_torque_share, 100.0 * motor.short_time_share);
 }

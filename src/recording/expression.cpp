@@ -139,7 +139,9 @@ Expression::Expression(std::string_view text, std::span<const std::string> heade
     : compiled_(std::make_unique<Compiled>()) {
   Rewriter rewriter(text, header, columns_);
   if (std::string problem = rewriter.run(); !problem.empty()) {
-    at.column += at.line > 0 ? static_cast<int>(rewriter.at) + 1 : 0;  // + 1: the opening quote of the TOML text
+    if (at.column) {
+      *at.column += static_cast<int>(rewriter.at) + 1;  // + 1: the opening quote of the TOML text
+    }
     problems.add(at, key, fmt::format("\"{}\": {}", text, problem));
     return;
   }

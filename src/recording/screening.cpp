@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -41,10 +42,10 @@ std::vector<Segment> segments_of(std::span<const double> values, std::pair<std::
 struct ChannelStatistics {
   double high = 0.0;
   NoiseLevel noise;
-  double repeats_share = 0.0;      ///< share of equal neighbours, without long constant segments
-  std::size_t longest_chance = 0;  ///< longest constant segment that noise explains, in samples; 0 if unknown
-  /// The same for one given segment, such as the one before a jump; 0 if unknown.
-  std::size_t longest_before_jump = 0;
+  double repeats_share = 0.0;                 ///< share of equal neighbours, without long constant segments
+  std::optional<std::size_t> longest_chance;  ///< longest constant segment that noise explains, in samples; empty if unknown
+  /// The same for one given segment, such as the one before a jump; empty if unknown.
+  std::optional<std::size_t> longest_before_jump;
 };
 
 /// Sufficient number of samples for a noise estimate.
@@ -89,7 +90,7 @@ ChannelStatistics statistics_of(std::span<const double> values, std::span<const 
 
 /// True if noise makes such a long constant segment improbable, even for a constant temperature.
 bool is_improbable(const Segment& segment, const ChannelStatistics& statistics) {
-  return statistics.longest_chance > 0 && segment.samples > statistics.longest_chance;
+  return statistics.longest_chance && segment.samples > *statistics.longest_chance;
 }
 
 /// True if the constant segment ends in a jump much larger than the following changes: the sensor was frozen while the temperature changed.
@@ -97,7 +98,7 @@ bool ends_in_isolated_jump(const std::vector<Segment>& run, std::size_t at, cons
   constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  const std::size_t long_hold = statistics.longest_before_jump > 0 ? statistics.longest_before_jump : kLongHold;
+  const std::size_t long_hold = statistics.longest_before_jump.value_or(kLongHold);
   if (run[at].samples <= long_hold || at + 2 >= run.size()) {
     return false;
   }
@@ -113,7 +114,7 @@ bool ends_in_isolated_jump(const std::vector<Segment>& run, std::size_t at, cons
 bool stays_still_to_the_end(const std::vector<Segment>& run, std::size_t at, const ChannelStatistics& statistics) {
   constexpr std::size_t kSlopeSegments = 10;
   constexpr double kFarAway_ratio = 20.0;
-  if (at + 1 != run.size() || at < kSlopeSegments || statistics.longest_chance == 0 || run[at].samples <= statistics.longest_chance) {
+  if (at + 1 != run.size() || at < kSlopeSegments || !is_improbable(run[at], statistics)) {
     return false;
   }
   const Segment& from = run[at - kSlopeSegments];
@@ -324,19 +325,22 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
 
 constexpr std::size_t kWindow = 7;  ///< window of the running median of a heat input, in rows
 
-/// Largest magnitude that any motor reaches, in the quantity's unit; 0 if there is no such limit.
-double largest_of_any_motor(const Quantity& quantity) {
+/// Largest magnitude that any motor reaches, in the quantity's unit; empty if there is no such limit.
+std::optional<double> largest_of_any_motor(const Quantity& quantity) {
   if (quantity.kind != QuantityKind::heat_input) {
-    return 0.0;
+    return std::nullopt;
   }
-  return quantity.unit == "A" ? kLargestCurrent_A : quantity.unit == "rad/s" ? kFastest_rad_per_s : 0.0;
+  if (quantity.unit == "A") {
+    return kLargestCurrent_A;
+  }
+  return quantity.unit == "rad/s" ? std::optional(kFastest_rad_per_s) : std::nullopt;
 }
 
 /// Omits single impossible heat inputs: one outlier of a current, squared, could exceed all other heat. Many of them indicate a wrong unit
 /// and are kept.
 void leave_out_wild_inputs(Recording& part, Channel& channel, const Reported& reported) {
-  const double largest = largest_of_any_motor(channel.quantity);
-  if (!(largest > 0.0)) {
+  const std::optional<double> largest = largest_of_any_motor(channel.quantity);
+  if (!largest) {
     return;
   }
   constexpr std::size_t kFew = 3;
@@ -346,7 +350,7 @@ void leave_out_wild_inputs(Recording& part, Channel& channel, const Reported& re
   std::vector<std::size_t> wild;
   for (std::size_t row = 0; row < values.size(); ++row) {
     const double size = std::abs(values[row]);
-    if (!(size > largest)) {
+    if (!(size > *largest)) {
       continue;
     }
     const std::size_t first = row - std::min(row, kWindow / 2);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "recording/quantities.h"
@@ -266,20 +267,20 @@ class Places {
     }
     const std::vector<double> heat = relative_heat(*input);
     for (const auto& [begin, end] : recording_.runs()) {
-      const StandstillWarmUp warm_up = standstill_warm_up(begin, end, heat);
-      if (warm_up.stator_ahead_K > 0.0) {
-        found_.emplace_back(StatorWarmsFirst{input->quantity.key, warm_up.stator_rise_K, warm_up.stator_ahead_K});
+      if (const std::optional<StatorLead> lead = lead_at_standstill(begin, end, heat)) {
+        found_.emplace_back(StatorWarmsFirst{input->quantity.key, lead->stator_rise_K, lead->stator_ahead_K});
         return;
       }
     }
   }
 
-  struct StandstillWarmUp {
+  /// Medians over the samples in which the stator is clearly warmer than at the start.
+  struct StatorLead {
     double stator_rise_K = 0.0;
-    double stator_ahead_K = 0.0;  ///< median lead of the stator over the winding; 0 if it is not clear
+    double stator_ahead_K = 0.0;  ///< temperature of the stator above the winding
   };
-  /// Evaluates a run from its first row until the motor turns.
-  [[nodiscard]] StandstillWarmUp standstill_warm_up(std::size_t begin, std::size_t end, std::span<const double> heat) const {
+  /// Evaluates a run from its first row until the motor turns. Returns nothing if the stator does not clearly lead.
+  [[nodiscard]] std::optional<StatorLead> lead_at_standstill(std::size_t begin, std::size_t end, std::span<const double> heat) const {
     constexpr double kStands_rad_per_s = 1.0;
     constexpr double kAlikeAtStart_K = 10.0;
     constexpr double kRises_K = 8.0;
@@ -298,7 +299,7 @@ class Places {
       heat_sum += std::isfinite(heat[row]) ? heat[row] : 0.0;
     }
     if (winding_C.size() < kFewestSamples || heat_sum <= 0.0) {
-      return {};
+      return std::nullopt;
     }
     const double winding_start_C = middle_of(std::span(winding_C).first(3));
     const double stator_start_C = middle_of(std::span(stator_C).first(3));
@@ -314,9 +315,9 @@ class Places {
     }
     if (std::abs(at_start_K) > kAlikeAtStart_K || ahead_K.size() < kFewestSamples || percentile(ahead_K, 1.0 - kAlways_share) < 0.0 ||
         middle_of(ahead_K) < std::max(kAhead_K, kAhead_share * middle_of(rises_K))) {
-      return {};
+      return std::nullopt;
     }
-    return {middle_of(rises_K), middle_of(ahead_K) + std::max(0.0, at_start_K)};
+    return StatorLead{middle_of(rises_K), middle_of(ahead_K) + std::max(0.0, at_start_K)};
   }
 
   struct Cooling {

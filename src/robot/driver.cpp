@@ -11,8 +11,12 @@
 namespace heatsoak::robot {
 
 DriverConfig make_driver(const Robot& robot) {
-  return {robot.drive.voltage_limit_V, robot.drive.current_limit_A, robot.drive.driver_resistance_ohm.value(),
-          robot.drive.driver_standby_W.value()};
+  DriverConfig driver;
+  driver.voltage_limit_V = robot.drive.voltage_limit_V.value_or(driver.voltage_limit_V);
+  driver.current_limit_A = robot.drive.current_limit_A.value_or(driver.current_limit_A);
+  driver.resistance_ohm = robot.drive.driver_resistance_ohm.value();
+  driver.standby_W = robot.drive.driver_standby_W.value();
+  return driver;
 }
 
 MotorElectrics make_electrics(const Robot& robot, const motor::MotorValues& motor) {

@@ -11,6 +11,7 @@ namespace heatsoak::robot {
 
 /// Currents are equivalent DC currents of block commutation, voltages between two terminals (as in MotorValues).
 struct DriverConfig {
+  // Infinite without a limit: the laws of all wheels compare with them in every step.
   double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< limit of the commanded voltage
   double current_limit_A = std::numeric_limits<double>::infinity();
   double resistance_ohm = 0.0;  ///< in series with the winding

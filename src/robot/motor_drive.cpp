@@ -29,7 +29,7 @@ DrivePoint clamped_point(const motor::MotorValues& motor, const Robot& robot, do
   // A back-EMF above the supply voltage makes the demand impossible, but does not reverse the current.
   const double most_A = std::max(0.0, (robot.available_V() - back_emf_V) / loop_ohm);
   const double least_A = std::min(0.0, (-robot.available_V() - back_emf_V) / loop_ohm);
-  point.current_A = std::clamp(wanted_A, -robot.drive.current_limit_A, robot.drive.current_limit_A);
+  point.current_A = robot.drive.limited_A(wanted_A);
   if (point.current_A != wanted_A) {
     point.limit = DriveLimit::current;
   }

@@ -285,15 +285,10 @@ void read_drive(input::Reader& top, Robot& robot) {
                      input::Need::optional)
           .value_or(1.0);
   robot.drive.voltage_limit_V =
-      drive
-          ->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest voltage that the driver can apply to one motor"},
-                     input::Need::optional)
-          .value_or(robot.drive.voltage_limit_V);
-  robot.drive.current_limit_A =
-      drive
-          ->quantity({"current_limit", "A", base::Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"},
-                     input::Need::optional)
-          .value_or(robot.drive.current_limit_A);
+      drive->quantity({"voltage_limit", "V", base::Range::between(0.5, 5000.0), "largest voltage that the driver can apply to one motor"},
+                      input::Need::optional);
+  robot.drive.current_limit_A = drive->quantity(
+      {"current_limit", "A", base::Range::between(0.01, 1000.0), "largest equivalent DC current of one motor"}, input::Need::optional);
   constexpr std::array<std::string_view, 2> kCommutations{"block", "sinusoidal"};
   robot.drive.commutation =
       drive->choice("commutation", kCommutations, input::Need::required) == "sinusoidal" ? Commutation::sinusoidal : Commutation::block;
@@ -345,7 +340,13 @@ Robot draw_sample(const Robot& robot, base::Random& random) {
   return drawn;
 }
 
-double Robot::available_V() const { return std::min(battery.nominal_V, drive.voltage_limit_V); }
+double RobotDrive::limited_V(double voltage_V) const { return voltage_limit_V ? std::min(voltage_V, *voltage_limit_V) : voltage_V; }
+
+double RobotDrive::limited_A(double current_A) const {
+  return current_limit_A ? std::clamp(current_A, -*current_limit_A, *current_limit_A) : current_A;
+}
+
+double Robot::available_V() const { return drive.limited_V(battery.nominal_V); }
 
 double Robot::series_resistance_ohm() const { return drive.driver_resistance_ohm.value_or(0.0); }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -39,13 +38,18 @@ struct RobotDrive {
   std::string motor;  ///< id of the motor that the robot is built with
   double gear_ratio = 1.0;
   double gear_efficiency = 1.0;
-  double voltage_limit_V = std::numeric_limits<double>::infinity();  ///< infinite: none
-  double current_limit_A = std::numeric_limits<double>::infinity();  ///< infinite: none
+  std::optional<double> voltage_limit_V = {};
+  std::optional<double> current_limit_A = {};
   Commutation commutation = Commutation::block;
   std::optional<double> driver_resistance_ohm = {};
   std::optional<double> driver_standby_W = {};
   std::optional<double> control_rate_Hz = {};
   std::optional<double> command_rate_Hz = {};
+
+  /// Returns the part of a voltage from 0 V up that the driver applies.
+  [[nodiscard]] double limited_V(double voltage_V) const;
+  /// Returns the part of a current of either sign that the driver permits.
+  [[nodiscard]] double limited_A(double current_A) const;
 };
 
 struct RobotBattery {

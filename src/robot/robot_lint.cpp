@@ -95,8 +95,9 @@ void check_drive(const Robot& robot, std::vector<motor::LintFinding>& findings) 
   const auto add = [&](const char* key, LintClause what) {
     findings.push_back(finding(robot, motor::LintFinding::Level::warning, "drive", key, std::move(what)));
   };
-  if (std::isfinite(robot.drive.voltage_limit_V) && robot.battery.full_V && robot.drive.voltage_limit_V > 1.1 * *robot.battery.full_V) {
-    add("drive.voltage_limit", LintClause{LintWords::voltage_limit_above_full, {robot.drive.voltage_limit_V, *robot.battery.full_V}});
+  const std::optional<double> limit_V = robot.drive.voltage_limit_V;
+  if (limit_V && robot.battery.full_V && *limit_V > 1.1 * *robot.battery.full_V) {
+    add("drive.voltage_limit", LintClause{LintWords::voltage_limit_above_full, {*limit_V, *robot.battery.full_V}});
   }
   // Known robots have ratios of 1 to 5.
   constexpr double kSmallestRatio = 0.5;
@@ -119,10 +120,10 @@ void check_mass(const Robot& robot, std::vector<motor::LintFinding>& findings) {
   const double diameter_m = 2.0 * kRadius_ratio * robot.wheels.contact_radius_m;
   const double volume_m3 = 0.25 * std::numbers::pi * diameter_m * diameter_m * kHeight_ratio * diameter_m;
   if (robot.mass_kg > kMost_kg_per_m3 * volume_m3) {
-    findings.push_back(finding(
-        robot, motor::LintFinding::Level::warning, "mass", "mass",
-        LintClause{LintWords::mass_large,
-                   {robot.mass_kg, robot.mass_kg / volume_m3, in_mm(diameter_m), kMost_kg_per_m3, kMost_kg_per_m3 * volume_m3}}));
+    findings.push_back(
+        finding(robot, motor::LintFinding::Level::warning, "mass", "mass",
+                LintClause{LintWords::mass_large,
+                           {robot.mass_kg, robot.mass_kg / volume_m3, in_mm(diameter_m), kMost_kg_per_m3, kMost_kg_per_m3 * volume_m3}}));
   }
 }
 

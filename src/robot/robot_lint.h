@@ -15,7 +15,7 @@ namespace heatsoak::robot {
 /// robot cannot exist, a warning that a value probably has another unit.
 std::vector<motor::LintFinding> implausible_values(const Robot& robot);
 
-/// Throws Failure (bad_input) with the errors of implausible_values(): no verdict and no firmware may rest on them.
+/// Throws Failure (bad_input) with the errors of implausible_values(): no verdict and no firmware may use them.
 void require_sound(const Robot& robot);
 
 /// Reads a robot file and checks it like require_sound(). Throws Failure (bad_input).

@@ -151,7 +151,7 @@ class ChangeWork {
   std::size_t done_ = 0;
 };
 
-ChangeEffect effect_of(ChangedQuantity quantity, double value, double factor, std::span<const Played> before,
+ChangeEffect effect_of(ChangedQuantity quantity, std::optional<double> value, double factor, std::span<const Played> before,
                        std::span<const Played> after) {
   const auto count = static_cast<double>(before.size());
   ChangeEffect effect{.quantity = quantity, .before = value, .factor = factor};
@@ -259,7 +259,7 @@ std::vector<ChangeEffect> effects_of_changes(const robot::Robot& robot, const du
   }
   const OtherMotor best = best_other_motor(games, robot, demands, candidates, work);
   if (best.motor) {
-    effects.push_back(effect_of(ChangedQuantity::motor, 0.0, 1.0, before, best.games));
+    effects.push_back(effect_of(ChangedQuantity::motor, {}, 1.0, before, best.games));
     effects.back().other_motor = best.motor->id;
   }
   std::ranges::stable_sort(effects, std::ranges::greater(), [](const ChangeEffect& each) {

@@ -20,7 +20,7 @@ enum class ChangedQuantity { acceleration, jerk, speed, yaw_acceleration, mass, 
 
 struct ChangeEffect {
   ChangedQuantity quantity = ChangedQuantity::acceleration;
-  double before = 0.0;                          ///< present value, in unit_of(quantity); 0 for another motor
+  std::optional<double> before = {};            ///< present value, in unit_of(quantity); empty for another motor
   double factor = 1.0;                          ///< ratio of the new to the present value
   std::string other_motor = {};                 ///< id; only for another motor
   double saved_K = 0.0;                         ///< decrease of the winding's peak, mean of the games; negative if it rises

@@ -53,7 +53,7 @@ const std::array<robot::MotorCommand, robot::kMostWheels>& CoreDrive::advance(co
   if (now_ % periods_per_step_ == 0) {
     sensing_.sample(robot, ambient_C_, input_);
     // Before the first packet the robot coasts, which is the default mode of Command.
-    input_.command_age_s = received_ < 0 ? 0.0F : static_cast<float>(static_cast<double>(now_ - received_) * SimulatedRobot::kPeriod_s);
+    input_.command_age_s = received_ ? static_cast<float>(static_cast<double>(now_ - *received_) * SimulatedRobot::kPeriod_s) : 0.0F;
     output_ = robot_core::step(config_, state_, input_);
     acting_ = is_delayed_ ? waiting_ : output_;
     waiting_ = output_;

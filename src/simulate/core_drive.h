@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "simulate/radio.h"
 #include "simulate/sensing.h"
@@ -59,8 +61,8 @@ class CoreDrive {
   double battery_V_;
   std::array<robot::MotorCommand, robot::kMostWheels> commands_{};
   std::int64_t periods_per_step_;
-  std::int64_t now_ = 0;        ///< index of the plant period
-  std::int64_t received_ = -1;  ///< plant period in which the command arrived; < 0: none yet
+  std::int64_t now_ = 0;                  ///< index of the plant period
+  std::optional<std::int64_t> received_;  ///< plant period in which the last command arrived; empty before the first
 };
 
 }  // namespace heatsoak::simulate

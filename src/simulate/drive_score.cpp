@@ -63,7 +63,9 @@ void DriveScorer::follow_core(const LoopMoment& moment) {
   std::array<bool, kLimits.size()> is_met{};
   for (int i = 0; i < moment.robot->wheel_count(); ++i) {
     is_fault = is_fault || robot_core::is_fault(out.reason[i]);
-    score_.guard_winding_peak_C = std::max(score_.guard_winding_peak_C, static_cast<double>(out.winding_C[i]));
+    if (moment.drive->config().guard != nullptr) {
+      score_.guard_winding_peak_C = std::max(score_.guard_winding_peak_C, std::optional(static_cast<double>(out.winding_C[i])));
+    }
     for (std::size_t limit = 0; limit < kLimits.size(); ++limit) {
       is_met[limit] = is_met[limit] || out.reason[i] == kLimits[limit];
     }

@@ -36,11 +36,11 @@ struct DriveScore {
   int hottest_wheel = 0;           ///< index of the hottest wheel, from 0
   double duel_copper_share = 0.0;  ///< share of the copper loss that occurs in duels
   // Actions of the drive core:
-  double guard_limited_s = 0.0;                    ///< time in which the guard limits a wheel or, in shadow mode, would limit it
-  double guard_missing_A_s = 0.0;                  ///< shadow mode: integral of the current that the guard would remove, all wheels
-  double guard_winding_peak_C = 0.0;               ///< peak of the guard's observer, all wheels; 0 without guard
-  double fault_s = 0.0;                            ///< time in which the core reports a fault of a wheel or of the robot
-  std::array<double, kLimits.size()> limited_s{};  ///< time in which each of kLimits limits any wheel
+  double guard_limited_s = 0.0;                     ///< time in which the guard limits a wheel or, in shadow mode, would limit it
+  double guard_missing_A_s = 0.0;                   ///< shadow mode: integral of the current that the guard would remove, all wheels
+  std::optional<double> guard_winding_peak_C = {};  ///< peak of the guard's observer, all wheels; empty without guard
+  double fault_s = 0.0;                             ///< time in which the core reports a fault of a wheel or of the robot
+  std::array<double, kLimits.size()> limited_s{};   ///< time in which each of kLimits limits any wheel
   double lost_packets_share = 0.0;
   EnergyAccount energy;
 };

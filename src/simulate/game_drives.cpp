@@ -3,19 +3,36 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 
 #include "base/diagnostic.h"
 
 namespace heatsoak::simulate {
 
+namespace {
+
+/// Needs one or more values.
+GameSpread spread_of(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
+  return {values.front(), low, high};
+}
+
+}  // namespace
+
 GameSpread GameDrives::spread(double DriveScore::*value) const {
-  const double first = games.front().*value;
-  GameSpread made{first, first, first};
+  std::vector<double> values;
+  std::ranges::transform(games, std::back_inserter(values), [value](const DriveScore& each) { return each.*value; });
+  return spread_of(values);
+}
+
+std::optional<GameSpread> GameDrives::spread(std::optional<double> DriveScore::*value) const {
+  std::vector<double> values;
   for (const DriveScore& each : games) {
-    made.low = std::min(made.low, each.*value);
-    made.high = std::max(made.high, each.*value);
+    if (each.*value) {
+      values.push_back(*(each.*value));
+    }
   }
-  return made;
+  return values.empty() ? std::nullopt : std::optional(spread_of(values));
 }
 
 namespace {

@@ -43,6 +43,8 @@ struct GameDrives {
 
   /// Returns value and range of one score; needs one or more games.
   [[nodiscard]] GameSpread spread(double DriveScore::*value) const;
+  /// Returns the same, or nothing if the games do not have this score.
+  [[nodiscard]] std::optional<GameSpread> spread(std::optional<double> DriveScore::*value) const;
 };
 
 /// Drives the same games with every motor; the result has the order of `motors`. A motor whose file lacks values for motion is not driven,

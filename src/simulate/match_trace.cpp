@@ -66,7 +66,10 @@ void MatchRows::take_core(const LoopMoment& moment) {
     const auto allowed_A = static_cast<double>(out.allowed_current_A[i]);
     open_.reason[static_cast<std::size_t>(i)] = std::max(open_.reason[static_cast<std::size_t>(i)], out.reason[i]);
     open_.allowed_A[i] = periods_ == 0 ? allowed_A : std::min(open_.allowed_A[i], allowed_A);
-    open_.guard_winding_C[i] = std::max(open_.guard_winding_C[i], static_cast<double>(out.winding_C[i]));
+    if (moment.drive->config().guard != nullptr) {
+      robot::PerWheel& highest_C = open_.guard_winding_C ? *open_.guard_winding_C : open_.guard_winding_C.emplace();
+      highest_C[i] = std::max(highest_C[i], static_cast<double>(out.winding_C[i]));
+    }
   }
 }
 
@@ -167,8 +170,8 @@ void append_csv(std::string& text, const MatchRow& row, int wheel_count, double 
   }
   fmt::format_to(to, ",{}", static_cast<int>(row.robot_reason));
   for (int i = 0; i < wheel_count; ++i) {
-    fmt::format_to(to, ",{},{:.4f},{:.3f}", static_cast<int>(row.reason[static_cast<std::size_t>(i)]), row.allowed_A[i],
-                   row.guard_winding_C[i]);
+    fmt::format_to(to, ",{},{:.4f},{}", static_cast<int>(row.reason[static_cast<std::size_t>(i)]), row.allowed_A[i],
+                   row.guard_winding_C ? fmt::format("{:.3f}", (*row.guard_winding_C)[i]) : "");
   }
   text += "\n";
 }

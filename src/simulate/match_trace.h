@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct MatchRow {
   robot_core::Reason robot_reason = robot_core::Reason::none;   ///< strongest fault of the robot
   std::array<robot_core::Reason, robot::kMostWheels> reason{};  ///< strongest reason of each wheel; faults are stronger than limits
   robot::PerWheel allowed_A{};                                  ///< smallest allowed current
-  robot::PerWheel guard_winding_C{};                            ///< highest temperature of the guard's observer; 0 without guard
+  std::optional<robot::PerWheel> guard_winding_C;               ///< highest temperatures of the guard's observer, if there is a guard
 };
 
 /// Additional columns of a trace that the motor file requires.
@@ -74,8 +75,8 @@ class MatchRows {
   bool begun_ = false;
 };
 
-/// Returns the header row with line break. Reasons are numbers of robot_core::Reason. Sensors with stated faults and additional bodies of
-/// the motor file have columns.
+/// Returns the header row with line break. Reasons are numbers of robot_core::Reason. Without a guard its column is empty. Sensors with
+/// stated faults and additional bodies of the motor file have columns.
 std::string csv_header(int wheel_count, const MatchAdditions& added);
 /// Appends one row with line break.
 void append_csv(std::string& text, const MatchRow& row, int wheel_count, double ambient_C, const MatchAdditions& added);

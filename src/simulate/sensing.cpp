@@ -75,7 +75,7 @@ std::span<const DeclaredNumber<SensingConfig>> sensing_numbers() { return kSensi
 
 SensingConfig sensing_of(const robot::Robot& robot) {
   SensingConfig config;
-  config.has_motor_current = std::isfinite(robot.drive.current_limit_A);
+  config.has_motor_current = robot.drive.current_limit_A.has_value();
   return config;
 }
 

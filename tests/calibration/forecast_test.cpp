@@ -12,6 +12,7 @@
 #include "calibration/forecast/prediction.h"
 #include "motor/write_motor.h"
 #include "study.h"
+#include "support/seed_rate.h"
 
 namespace heatsoak::calibration::study {
 namespace {
@@ -48,7 +49,8 @@ TEST(IndependentSamples, AreThoseOfKnownProcesses) {
   constexpr int kSamples = 20'000;
   for (const double kept : {0.0, 0.5, 0.9}) {
     const double expected = kSamples * (1.0 - kept) / (1.0 + kept);
-    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    // The estimate of 20 000 samples scatters by some per cent, most for the process with the longest memory.
+    EXPECT_TRUE(holds_for_share(0.95, 30, [&](std::uint64_t seed) {
       base::Random random(seed, 1);
       Eigen::VectorXd error_K(kSamples);
       double now_K = 0.0;
@@ -56,8 +58,8 @@ TEST(IndependentSamples, AreThoseOfKnownProcesses) {
         now_K = kept * now_K + estimation::standard_normal(random);
         each = now_K;
       }
-      EXPECT_NEAR(independent_samples(error_K) / expected, 1.0, 0.15) << kept << ", seed " << seed;
-    }
+      return std::abs(independent_samples(error_K) / expected - 1.0) <= 0.15;
+    })) << kept;
   }
   // A constant error counts as one independent sample.
   EXPECT_LT(independent_samples(Eigen::VectorXd::Ones(kSamples)), 2.1);
@@ -200,7 +202,7 @@ TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   EXPECT_GT(fit.weight, 0.0);
   EXPECT_LT(fit.weight, 0.5) << "errors of slow unknown heat are correlated";
   // The covariance must be wider by the same factor.
-  ForecastRules all_count{.held_error_K = fit.error_K, .held_weight = 1.0};
+  ForecastRules all_count{.held = ForecastErrorModel{fit.error_K, 1.0}};
   const ForecastFit sure = fit_forecast(model, runs, {}, fit.theta, all_count);
   EXPECT_GT(fit.covariance(0, 0), 1.5 * sure.covariance(0, 0));
 }

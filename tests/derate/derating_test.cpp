@@ -346,7 +346,7 @@ TEST(Derate, NamesTheCurrentThatMakesAPeriodTooLong) {
   motor::Motor motor = ecx_32();
   motor.nominal.terminal_resistance_ohm = 0.05;
   robot::Robot robot = twente();
-  robot.drive.current_limit_A = std::numeric_limits<double>::infinity();
+  robot.drive.current_limit_A.reset();
   try {
     derate(motor, robot, {});
     FAIL() << "no failure";

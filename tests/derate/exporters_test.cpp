@@ -42,9 +42,23 @@ INSTANTIATE_TEST_SUITE_P(All, EveryExporter,
                          testing::Values("c_header", "c_header_q15", "json", "csv", "moteus", "odrive", "vesc", "simplefoc", "mujoco",
                                          "fmi2_motor", "fmi2_guard", "fmi3_motor", "fmi3_guard"));
 
+TEST(Exporters, ANameThatSuitsAnotherFormatIsNoticed) {
+  const auto expected = [](std::string_view exporter, std::string_view file) {
+    const ExporterType* const found = expected_by_name(*std::ranges::find(all_exporters(), exporter, &ExporterType::name), file);
+    return found == nullptr ? std::string_view() : found->name;
+  };
+  EXPECT_EQ(expected("csv", "x.h"), "c_header");
+  EXPECT_EQ(expected("c_header", "x.csv"), "csv");
+  EXPECT_EQ(expected("fmi2_motor", "x.json"), "json");
+  for (const auto& [exporter, file] :
+       {std::pair("csv", "x.csv"), {"csv", "x"}, {"csv", "x.txt"}, {"c_header_q15", "x.h"}, {"simplefoc", "x.h"}}) {
+    EXPECT_EQ(expected(exporter, file), "") << exporter << ' ' << file;
+  }
+}
+
 TEST(Exporters, ConfidenceIsABoundThatTheDrawsShow) {
   const Guarantee& checked = ecx_derating().guarantee;
-  const int most = most_over(ecx_derating().options.guarantee);
+  const int most = most_over(ecx_derating().options.guarantee).value();
   EXPECT_LE(checked.over, most);
   // Definition: if the share were lower, so few exceedances would have a probability below 5 %.
   const auto chance_of = [&](int over) {

@@ -16,7 +16,7 @@ using motor::states::winding;
 
 /// Returns the no-load speed at the command's limit.
 double fastest_driven_rad_per_s(const motor::Motor& motor, const robot::Robot& robot) {
-  return std::min(robot.battery.full_V.value(), robot.drive.voltage_limit_V) / motor.nominal.torque_constant_Nm_per_A;
+  return robot.drive.limited_V(robot.battery.full_V.value()) / motor.nominal.torque_constant_Nm_per_A;
 }
 
 struct FastMotor {

@@ -43,7 +43,8 @@ class CsvTest : public testing::Test {
     } catch (const base::Failure& failure) {
       EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
       for (const base::Diagnostic& each : failure.diagnostics()) {
-        result.push_back(std::to_string(each.at.line) + ":" + std::to_string(each.at.column) + " " + each.key + ": " + each.message);
+        result.push_back(std::to_string(each.at.line.value_or(0)) + ":" + std::to_string(each.at.column.value_or(0)) + " " + each.key +
+                         ": " + each.message);
       }
     }
     return result;

@@ -30,7 +30,7 @@ class ReaderTest : public testing::Test {
   [[nodiscard]] std::vector<std::string> places() const {
     std::vector<std::string> result;
     for (const base::Diagnostic& each : diagnostics_.list()) {
-      result.push_back(std::to_string(each.at.line) + ":" + std::to_string(each.at.column) + " " + each.key);
+      result.push_back(std::to_string(each.at.line.value_or(0)) + ":" + std::to_string(each.at.column.value_or(0)) + " " + each.key);
     }
     return result;
   }
@@ -102,7 +102,7 @@ TEST_F(ReaderTest, a_wrong_quantity_of_a_list_is_reported_at_its_place) {
   EXPECT_THAT(places(), ElementsAre("1:24 resistance[1]", "1:27 resistance[2]", "1:34 resistance[3]"));
 }
 
-base::ParameterValue parameter_of(std::optional<base::ParameterValue> figure) { return figure.value_or(base::ParameterValue{}); }
+base::ParameterValue parameter_of(std::optional<base::ParameterValue> parameter) { return parameter.value_or(base::ParameterValue{}); }
 
 TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
   Reader top = read(
@@ -119,23 +119,23 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
 }
 
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
-  const base::ParameterValue figure = parameter_of(
+  const base::ParameterValue parameter = parameter_of(
       read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
           .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
-  EXPECT_DOUBLE_EQ(figure.spread->low, 1.9);
-  EXPECT_DOUBLE_EQ(figure.spread->high, 2.5);
+  EXPECT_DOUBLE_EQ(parameter.spread->low, 1.9);
+  EXPECT_DOUBLE_EQ(parameter.spread->high, 2.5);
 }
 
 TEST_F(ReaderTest, other_sources_of_a_value_have_units_too) {
-  const base::ParameterValue figure = parameter_of(
+  const base::ParameterValue parameter = parameter_of(
       read(R"(resistance = { value = "2 ohm", origin = "measured", source = "s", confirmed_by = { a = "2100 mohm", b = "1.9 ohm" } })")
           .parameter(kResistance, Need::required));
   ASSERT_TRUE(diagnostics_.empty()) << message();
-  ASSERT_EQ(figure.confirmed_by.size(), 2U);
-  EXPECT_EQ(figure.confirmed_by[0].source, "a");
-  EXPECT_DOUBLE_EQ(figure.confirmed_by[0].value, 2.1);
-  EXPECT_EQ(figure.confirmed_by[0].printed, "2100 mohm");
+  ASSERT_EQ(parameter.confirmed_by.size(), 2U);
+  EXPECT_EQ(parameter.confirmed_by[0].source, "a");
+  EXPECT_DOUBLE_EQ(parameter.confirmed_by[0].value, 2.1);
+  EXPECT_EQ(parameter.confirmed_by[0].printed, "2100 mohm");
 }
 
 TEST_F(ReaderTest, an_unknown_origin_is_one_problem_not_three) {

@@ -145,11 +145,11 @@ TEST(ClosedLoop, a_late_sensor_shows_in_columns_of_its_own) {
 TEST(ClosedLoop, a_body_of_the_motors_file_has_its_temperature_in_the_trace) {
   motor::Motor motor = ecx_32();
   EXPECT_EQ(csv_header(4, additions_of(motor)).find("mount"), std::string::npos);
-  std::vector<base::ParameterValue> figures(3);
-  figures[0].value = 0.8;
-  figures[1].value = 0.5;
-  figures[2].value = 4.0;
-  motor.effects.push_back({"mount", thermal::find_effect("third_node"), {"stator", "mount", "ambient"}, figures});
+  std::vector<base::ParameterValue> parameters(3);
+  parameters[0].value = 0.8;
+  parameters[1].value = 0.5;
+  parameters[2].value = 4.0;
+  motor.effects.push_back({"mount", thermal::find_effect("third_node"), {"stator", "mount", "ambient"}, parameters});
   std::vector<double> mount_C{25.0};  // value after each period
   double stator_C = 25.0;
   const Driven driven = drive(twente(), motor, lively(), kLively_s, duty::Planner::jerk_limited, [&](const LoopMoment& moment) {

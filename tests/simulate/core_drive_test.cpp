@@ -205,8 +205,8 @@ TEST(GuardedCore, shadow_counts_and_on_limits) {
 // Winding and stator are so poorly coupled that iron loss alone exceeds the limit. derate() refuses, and the core drives without guard.
 TEST(GuardedCore, a_motor_that_cannot_be_guarded_says_why) {
   motor::Motor motor = ecx_32();
-  base::ParameterValue& figure = motor.parameters.at("winding_limit");
-  figure.value = 41.0;
+  base::ParameterValue& limit = motor.parameters.at("winding_limit");
+  limit.value = 41.0;
   motor::refresh_values(motor);
   const MotorGuard guard = make_guard(motor, twente(), 25.0, 2);
   EXPECT_FALSE(guard.guard);

@@ -29,8 +29,8 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
 
 /// A table cannot differ by more than the current that the driver permits.
 inline std::optional<LoosestLimit> largest_difference(const Check& check) {
-  return check.robot && std::isfinite(check.robot->drive.current_limit_A)
-             ? std::optional<LoosestLimit>({check.robot->drive.current_limit_A, LoosestBy::driver_limit, true})
+  return check.robot && check.robot->drive.current_limit_A
+             ? std::optional<LoosestLimit>({*check.robot->drive.current_limit_A, LoosestBy::driver_limit, true})
              : std::nullopt;
 }
 

@@ -9,7 +9,7 @@ Measured measure_guard_active_share(const Check& check, Computations& computatio
   return {drive.score.guard_limited_s / drive.duration_s, 0.0,
           GuardShareBasis{.limited_s = drive.score.guard_limited_s,
                           .duration_s = drive.duration_s,
-                          .observer_peak_C = drive.score.guard_winding_peak_C,
+                          .observer_peak_C = drive.score.guard_winding_peak_C.value(),
                           .winding_peak_C = drive.score.winding_peak_C}};
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "base/delayed_signals.h"
@@ -43,8 +44,9 @@ class TemporaryFolder {
 constexpr std::string_view kSaid = "compiler.txt";
 constexpr std::size_t kLargest_bytes = 16U << 20U;
 
-/// Runs the command in the folder with both outputs redirected to kSaid. Returns its exit code, -1 if it could not be started.
-int run(std::vector<std::string> words, const fs::path& folder) {
+/// Runs the command in the folder with both outputs redirected to kSaid. Returns its exit code; nothing if it did not start or a signal
+/// ended it.
+std::optional<int> run(std::vector<std::string> words, const fs::path& folder) {
   std::vector<char*> arguments;
   std::ranges::transform(words, std::back_inserter(arguments), [](std::string& word) { return word.data(); });
   arguments.push_back(nullptr);
@@ -58,7 +60,7 @@ int run(std::vector<std::string> words, const fs::path& folder) {
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
   if (!is_started || ::waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    return -1;
+    return std::nullopt;
   }
   return WEXITSTATUS(status);
 }
@@ -99,7 +101,7 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
     }
   }
   words.emplace_back("-lm");
-  const int code = run(words, folder.path());
+  const std::optional<int> code = run(words, folder.path());
   if (code != 0) {
     std::error_code none;
     const std::string said =
@@ -107,8 +109,8 @@ std::vector<FmuFile> with_binary(std::vector<FmuFile> files, const FmuModel& mod
     throw base::Failure(
         base::ExitCode::bad_input,
         fmt::format("--compiler {}: {}, expected a C99 compiler such as cc; without --compiler the file contains sources only{}{}",
-                    compiler, code < 0 || said.empty() ? "cannot be run" : fmt::format("ended with code {}", code),
-                    said.empty() ? "" : "\n", said));
+                    compiler, !code || said.empty() ? "cannot be run" : fmt::format("ended with code {}", *code), said.empty() ? "" : "\n",
+                    said));
   }
   files.push_back(
       {fmt::format("binaries/{}/{}.so", machine, model.identifier), base::read_file(folder.path() / "unit.so", kLargest_bytes)});

@@ -91,8 +91,8 @@ class Units {
   void take_turn(Before& before, const Detection& sight, const input::CsvRow& row) {
     const double turn = std::abs(sight.yaw_rad - before.sight.yaw_rad);
     const bool is_lost = sight.time_s - before.sight.time_s > kLongestBridge_s;
-    if (!is_lost && std::abs(turn - kFullTurn) < 30.0 && wrap_.line == 0) {
-      wrap_ = {{}, row.line, row.cells[yaw]};
+    if (!is_lost && std::abs(turn - kFullTurn) < 30.0 && !wrap_) {
+      wrap_ = base::Location{{}, row.line, row.cells[yaw]};
     }
     if (is_lost || turn > 0.5 * kFullTurn) {  // a wrapped turn is not usable
       before.window = sight;
@@ -107,8 +107,8 @@ class Units {
     constexpr double kNobodyTurns_rad_per_s = 15.0;
     constexpr double kNobodyKeepsTurning_rad_per_s = 4.0;
     const double mean_rad_per_s = turned_s_ > 1.0 ? turned_ / turned_s_ : 0.0;
-    if (wrap_.line > 0 && highest_yaw_ - lowest_yaw_ < 1.01 * kFullTurn) {
-      const base::Diagnostic there{{file.string(), wrap_.line, wrap_.column}, "yaw_rad", ""};
+    if (wrap_ && highest_yaw_ - lowest_yaw_ < 1.01 * kFullTurn) {
+      const base::Diagnostic there{{file.string(), wrap_->line, wrap_->column}, "yaw_rad", ""};
       problems.add(input::with_characters({there}).front().at, there.key,
                    "jumps by a full turn of 360: it is in degrees; expected radians");
     } else if (mean_rad_per_s > kNobodyTurns_rad_per_s) {
@@ -129,7 +129,7 @@ class Units {
   double lowest_yaw_ = std::numeric_limits<double>::infinity();
   double highest_yaw_ = -std::numeric_limits<double>::infinity();
   std::uint64_t beyond_a_turn_ = 0;
-  base::Location wrap_;  ///< location of the first step of about 360; its column counts cells
+  std::optional<base::Location> wrap_;  ///< location of the first step of about 360; its column counts cells
   double farthest_m_ = 0.0;
   std::uint64_t outside_ = 0;
   std::uint64_t sights_ = 0;

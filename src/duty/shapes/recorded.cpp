@@ -209,7 +209,7 @@ void read_recorded(input::Reader& table, const std::filesystem::path& folder, Du
     wheels = Recording(folder / *file, duty.kind).read();
   } catch (const base::Failure& failure) {
     for (const base::Diagnostic& each : failure.diagnostics()) {
-      if (each.at.line > 0) {
+      if (each.at.line) {
         table.add(each);
       } else {
         table.problem("file", fmt::format("{} {}", each.at.file, each.message));

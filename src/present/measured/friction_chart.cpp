@@ -107,8 +107,8 @@ class Drives {
 
   /// Returns the lines of the heading with the most legs. Among equals, the heading on which the slowest wheel turns fastest.
   [[nodiscard]] std::optional<report::ChartPanel> of_one_heading() const {
-    const int number = informative_heading();
-    if (number < 0) {
+    const std::optional<int> number = informative_heading();
+    if (!number) {
       return std::nullopt;
     }
     report::ChartPanel panel;
@@ -206,26 +206,26 @@ class Drives {
  private:
   static constexpr double kSameHeading_rad = 2.5 / kDegrees_per_rad;
 
-  [[nodiscard]] int informative_heading() const {
+  [[nodiscard]] std::optional<int> informative_heading() const {
     std::map<int, std::pair<int, double>> worth;  // number of legs, and the share of the travel speed at the slowest wheel
     for (const auto& [part, number] : parts_) {
       double least_share = 1.0;
       for (int i = 0; i < kinematics_.wheel_count; ++i) {
         least_share = std::min(least_share, std::abs(friction::rolling_share(kinematics_.wheels[i], part->heading_rad)));
       }
-      if (number >= 0) {
-        ++worth[number].first;
-        worth[number].second = least_share;
+      if (number) {
+        ++worth[*number].first;
+        worth[*number].second = least_share;
       }
     }
     const auto best = std::ranges::max_element(worth, {}, [](const auto& each) { return each.second; });
-    return best == worth.end() ? -1 : best->first;
+    return best == worth.end() ? std::nullopt : std::optional(best->first);
   }
 
   const friction::FrictionFit& fit_;
   const robot::Kinematics& kinematics_;
-  std::vector<int> numbers_;
-  std::vector<std::pair<const friction::SteadyPart*, int>> parts_;
+  std::vector<std::optional<int>> numbers_;
+  std::vector<std::pair<const friction::SteadyPart*, std::optional<int>>> parts_;
 };
 
 /// Offset and damping of every heading over the direction of travel.

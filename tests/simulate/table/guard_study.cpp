@@ -81,7 +81,7 @@ struct Value {
 };
 constexpr Value kValues[] = {
     {"winding peak / °C", "winding_peak_C", 0, [](const Hardship& h) { return h.score.winding_peak_C; }},
-    {"observer peak / °C", "observer_peak_C", 0, [](const Hardship& h) { return h.score.guard_winding_peak_C; }},
+    {"observer peak / °C", "observer_peak_C", 0, [](const Hardship& h) { return h.score.guard_winding_peak_C.value_or(0.0); }},
     {"distance / m", "distance_m", 0, [](const Hardship& h) { return h.score.distance_m; }},
     {"guard limits / s", "guard_limited_s", 0, [](const Hardship& h) { return h.score.limited_s.back(); }},
     {"more than 90 mm off the plan / s", "off_plan_s", 0, [](const Hardship& h) { return h.off_plan_s; }},

@@ -80,12 +80,12 @@ HardMatch make_hard_match(const robot::Robot& robot, double share) {
     if (spec == specs.end()) {
       throw base::Failure(base::ExitCode::bug, fmt::format("a match has no input {}", harder.key));
     }
-    base::ParameterValue& figure = match.inputs.parameters.at(static_cast<std::size_t>(spec - specs.begin()));
+    base::ParameterValue& parameter = match.inputs.parameters.at(static_cast<std::size_t>(spec - specs.begin()));
     const std::string unit(spec->spec.unit);
-    const double value = std::lerp(figure.value, harder.value, share);
+    const double value = std::lerp(parameter.value, harder.value, share);
     match.changed.push_back(
-        {harder.key, fmt::format("{:.3g} {}", figure.value, unit), fmt::format("{:.3g} {}", value, unit), harder.remark});
-    figure.value = value;
+        {harder.key, fmt::format("{:.3g} {}", parameter.value, unit), fmt::format("{:.3g} {}", value, unit), harder.remark});
+    parameter.value = value;
   }
   for (const HarderParameter& harder : kHarderParameters) {
     double& value = harder.value(match.robot).value();
@@ -112,14 +112,14 @@ motor::Motor bench_tested(const motor::Motor& motor) {
                                        {"no_load_current", 0.2}};
   motor::Motor tested = motor;
   for (const Tolerance& each : kTolerances) {
-    base::ParameterValue* const figure = motor::find_parameter(tested, each.key);
-    if (figure == nullptr) {
+    base::ParameterValue* const parameter = motor::find_parameter(tested, each.key);
+    if (parameter == nullptr) {
       throw base::Failure(base::ExitCode::bug, fmt::format("the motor has no {}", each.key));
     }
     // Tolerances this narrow would be replaced by the default for an estimate.
-    figure->origin = base::Origin::measured;
-    figure->spread = base::Spread{
-        .kind = base::Spread::Kind::range, .low = figure->value * (1.0 - each.share), .high = figure->value * (1.0 + each.share)};
+    parameter->origin = base::Origin::measured;
+    parameter->spread = base::Spread{
+        .kind = base::Spread::Kind::range, .low = parameter->value * (1.0 - each.share), .high = parameter->value * (1.0 + each.share)};
   }
   return tested;
 }

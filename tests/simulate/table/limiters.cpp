@@ -34,7 +34,7 @@ derate::Derating exact_derating(const motor::Motor& motor, const robot::Robot& r
   const double reachable_rad_per_s = rules.most_speed_rad_per_s;
   rules.most_speed_rad_per_s = derate::sustainable_speed_rad_per_s(observer, rules);
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
-    rules.no_current_speed_rad_per_s = 0.0;
+    rules.no_current_speed_rad_per_s.reset();
   }
   // The oracle's table is nearly exact.
   derate::CurrentTable table = derate::current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});

@@ -23,11 +23,14 @@ base::Failure with_message(const base::Failure& failure, std::string message) {
   return {failure.code(), std::move(message), {failure.diagnostics().begin(), failure.diagnostics().end()}};
 }
 
-/// Line of the log that the problem names; 0: none.
-int line_of(const calibration::LogProblem& problem) {
+/// Line of the log that the problem names.
+std::optional<int> line_of(const calibration::LogProblem& problem) {
   const auto* const current = std::get_if<calibration::CurrentOutliers>(&problem);
   const auto* const speed = std::get_if<calibration::SpeedOutliers>(&problem);
-  return current != nullptr ? current->line : speed != nullptr ? speed->line : 0;
+  if (current != nullptr) {
+    return current->line;
+  }
+  return speed != nullptr ? std::optional(speed->line) : std::nullopt;
 }
 
 base::Failure worded(const recording::NothingAboutHeat& failure) {
@@ -105,8 +108,8 @@ base::Failure worded(const friction::LogsLookWrong& failure) {
 base::Failure worded(const calibration::LogsLookWrong& failure) {
   std::vector<base::Diagnostic> diagnostics;
   for (const auto& [file, problem] : failure.findings()) {
-    const int line = line_of(problem);
-    diagnostics.push_back({{file, line, line > 0 ? 1 : 0}, {}, words_of(problem)});
+    const std::optional<int> line = line_of(problem);
+    diagnostics.push_back({{file, line, line ? std::optional(1) : std::nullopt}, {}, words_of(problem)});
   }
   return {failure.code(), failure.message(), std::move(diagnostics)};
 }
