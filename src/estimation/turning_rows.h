@@ -1,8 +1,6 @@
 // Rows in which a motor reverses. There, the mean of the signed speed is smaller than the mean magnitude, which determines the losses.
 #pragma once
 
-#include <string_view>
-
 #include "estimation/measured_run.h"
 
 namespace heatsoak::estimation {
@@ -13,9 +11,5 @@ bool may_turn_within_rows(const MeasuredRun& run);
 /// Returns the run with new mean and RMS speeds of such rows: for a speed that varies linearly from the row before to the row after,
 /// instead of a constant speed. Rows that are means of finer rows are not changed.
 MeasuredRun turning_within_rows(MeasuredRun run);
-
-inline constexpr std::string_view kTurningRowsReason =
-    "the speed is interpolated linearly within rows, because it changes its sign from row to row and this has the larger evidence in these "
-    "runs";
 
 }  // namespace heatsoak::estimation

@@ -8,7 +8,6 @@
 
 #include "base/quantity.h"
 #include "estimation/log_rows.h"
-#include "estimation/turning_rows.h"
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
 #include "present/measured/severity_of_kind.h"
@@ -46,7 +45,10 @@ std::string say(const calibration::LossAtSpeedUnknown& of) {
       base::significant(of.most_W, 2));
 }
 
-std::string say(const calibration::RowsTurn& /*of*/) { return std::string(estimation::kTurningRowsReason); }
+std::string say(const calibration::RowsTurn& /*of*/) {
+  return "the speed is interpolated linearly within rows: it changes its sign from row to row, and this explains the runs better than a "
+         "constant speed per row";
+}
 
 std::string say(const calibration::UnmodelledHeat& of) {
   return fmt::format(
