@@ -78,7 +78,7 @@ std::uint64_t check_sum_of_words(const void* object, std::uint64_t seed) {
     sum[i % 2] = sum[i % 2].with(word);
   }
   // A multiple of a highest bit is that bit, so the rotation keeps it apart from the same bit of the neighbouring word. The last round
-  // separates the last words from the stored sum.
+  // separates the final words from the stored sum.
   sum[1].high = sum[1].high << 16U | sum[1].high >> 16U;
   return sum[0].with(sum[1].value()).with(0U).value();
 }

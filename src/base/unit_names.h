@@ -21,7 +21,7 @@ struct SiUnit {
 };
 
 struct UnitWord {
-  std::string_view word;  ///< last word of a name
+  std::string_view word;  ///< final word of a name
   std::string_view unit;  ///< UDUNITS text; "" for a pure number
   SiUnit si;
 };

@@ -17,10 +17,10 @@ struct Check;
 
 enum class Bound { at_most, at_least };
 
-/// Distance that --update leaves between the measured value and its new limit.
+/// Room that --update leaves between the measured value and the new limit.
 enum class Room {
-  share,  ///< a share of the value's distance to its origin, 5 % unless --margin says otherwise
-  none    ///< the limit is the value
+  share,  ///< 5 %, or --margin, of the distance between the value and its origin (Measured::origin_value)
+  none    ///< none: the measured value becomes the limit
 };
 
 /// Keys of a [[check]] table other than its name and limits.
@@ -50,11 +50,11 @@ std::span<const SettingText> all_settings();
 
 struct Measured {
   double value = 0.0;         ///< in the unit of the threshold
-  double origin_value = 0.0;  ///< in the same unit; --update derives the room from the distance to it; for a temperature: the air
+  double origin_value = 0.0;  ///< in the same unit; 0 or, for a temperature, the air: the room of --update is a share of the distance to it
   Basis basis = {};
   bool is_never = false;  ///< the event never happens, so that its time, the value, is infinite
-  double interval_width_value =
-      0.0;  ///< width of the value's 95 % interval; --update leaves a share of it as room if it exceeds the distance
+  /// Width of the value's 95 % interval. If it is larger than the distance to the origin, the room is a share of it instead.
+  double interval_width_value = 0.0;
 };
 
 /// Origin of the loosest limit that a check may set.
@@ -71,11 +71,11 @@ enum class LoosestBy {
   motors_against,     ///< number of motors to rank with
   values_of_files,    ///< number of values in a complete motor file, for every file
   largest_core,       ///< twice the code of the drive core with the largest guard table
-  largest_share,      ///< below 100 %, which holds always
-  smallest_value      ///< the number is never below it
+  largest_share,      ///< less than 100 %, because a share is never above that
+  smallest_value      ///< the smallest value that the number can have
 };
 
-/// Time is counted above a temperature that exceeds the motor's own limit, so every limit comes too late.
+/// The check counts the time above a temperature that is higher than the motor's own limit, so no limit on that time protects the motor.
 struct CountedTooHot {
   double temperature_C = 0.0;
   double winding_limit_C = 0.0;
@@ -85,11 +85,11 @@ struct CountedTooHot {
 struct LoosestLimit {
   double value = 0.0;  ///< in the unit of the threshold
   LoosestBy origin = LoosestBy::largest_share;
-  bool always_holds = false;                  ///< a limit of this value holds always, so only a tighter one is permitted
+  bool always_holds = false;                  ///< true: this value can never be exceeded, so the limit must be tighter
   std::optional<CountedTooHot> refusal = {};  ///< why the settings of the check make every limit useless
 };
 
-/// A share of 100 % holds always, so a limit must be below it.
+/// No share is above 100 %, so a limit must be below it.
 inline LoosestLimit largest_share_limit() { return {0.999, LoosestBy::largest_share}; }
 
 struct ThresholdType {

@@ -22,7 +22,7 @@ struct OwnFriction {
 /// current is linear in the speed, which is exact for the network of a data sheet.
 std::optional<OwnFriction> own_friction(const Derating& derating);
 
-/// Throws Failure (limit_exceeded) if the motor cannot turn itself for ever at the speed that a full battery reaches. An unloaded wheel
+/// Throws Failure (limit_exceeded) if the motor cannot turn itself continuously at the speed that a full battery reaches. An unloaded wheel
 /// reaches this speed in any duty. At higher speeds something else turns the motor, so no current is required there.
 void require_own_friction(const Derating& derating);
 

@@ -20,9 +20,9 @@ std::array<double, observed::kSignalCount> signals_without_power(const Derating&
 /// rate over all of them. Empty if no law depends on the age.
 std::vector<float> ages_without_power_h(const Derating& derating);
 
-/// Returns temperatures in °C, one per node, to which the motor without power cools: its steady state, rounded up by kRounding_K. A
-/// restored guard uses them for time that it does not simulate. Nodes that are all at most c ≥ 0 K above these temperatures never get
-/// further above them. Where the laws of the motor do not ensure this, the rise over the air is enlarged until they do; if that does not
+/// Returns temperatures in °C, one per node, to which the motor cools without power: its steady state, rounded up by kRounding_K. A
+/// restored guard uses them for time that it does not simulate. They are upper bounds: if no node is more than c K above its value (c ≥ 0),
+/// none will be later. If the laws of the motor do not ensure this, the rise over the air is enlarged until they do; if that does not
 /// help, the result is the winding limit. `rate_steps`: the observer's rates with or without the safety factor on heat.
 std::vector<double> resting_C(const Derating& derating, std::span<const int> rate_steps);
 
@@ -42,8 +42,8 @@ struct PowerOffReport {
   std::vector<double> start_C;  ///< every node before the loss of power: its hottest steady state at the full allowed current
   std::vector<PowerOffCase> cases;
 };
-/// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer, which counts as a
-/// motor at its limit. No time is unsaved and no board sensor is used.
+/// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer, which counts
+/// as a motor at its limit. No time is unsaved and no board sensor is used.
 PowerOffReport power_off_report(const Derating& derating);
 
 /// Larger than the last digit of a temperature in single precision and in the integer form.

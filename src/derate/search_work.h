@@ -21,7 +21,7 @@ class SearchWork {
   [[nodiscard]] std::size_t expected(Stage stage) const { return expected_[stage]; }
   void expect(Stage stage, std::size_t simulations) { expected_[stage] = simulations; }
 
-  /// Ends the stages before this one: what they did was their work.
+  /// Begins a stage and ends those before it: their finished work becomes their whole work.
   void begin(Stage stage) {
     for (std::size_t each = stage_; each < stage; ++each) {
       expected_[each] = done_[each];

@@ -28,7 +28,7 @@ Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPri
   return nats;
 }
 
-/// True if the left-out recordings, without the one that gains most, together gain enough: an explanation must not rest on one recording.
+/// True if the left-out recordings, without the one that gains most, together gain enough: an explanation must not depend on one recording.
 /// `gain_nats`: gain of each recording as the difference of two results of left_out_nats(). False for a single recording.
 bool is_confirmed(const Eigen::VectorXd& gain_nats);
 

@@ -15,7 +15,7 @@ namespace heatsoak::firmware {
 struct CoreOptions {
   double period_s = 0.001;               ///< between two calls of robot_core::step()
   double coldest_ambient_C = 0.0;        ///< a winding is never colder
-  double lowest_resistance_ratio = 1.0;  ///< smallest terminal resistance of a motor within its tolerance, per nominal one
+  double lowest_resistance_ratio = 1.0;  ///< smallest terminal resistance within the tolerance, divided by the nominal one
   bool has_pose_targets = true;          ///< robot_core::plan_to_pose is linked
   bool shadow_mode = false;              ///< the guard counts what it would limit, and limits nothing
 };

@@ -29,7 +29,7 @@ constexpr double kMostInertia = 0.5;
 /// 0.28 for external rotors, 0.018 to 0.028 for the internal ones of the EC-i 40.
 constexpr double kLeastExternalInertia = 0.03;
 /// Lasting over stall current, the root of the share of the stall power that the motor can shed. Usual: motor_db has 0.06 to 0.31, a
-/// traction motor of 52 kW 0.025. Possible: gimbal motors hold their stall current forever. A wrong prefix of the resistance is a factor of
+/// traction motor of 52 kW 0.025. Possible: gimbal motors hold their stall current continuously. A wrong prefix of the resistance is a factor of
 /// 32.
 constexpr Bounds kUsualLasting_share{0.015, 0.5};
 constexpr Bounds kLasting_share{0.003, 3.0};

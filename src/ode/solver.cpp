@@ -86,8 +86,8 @@ int OdeSolver::shield(const char* what, double time_s, std::span<double> written
       thrown_ = std::current_exception();
     }
   }
-  // CVODES' fixed-point iteration does not stop at a failed call but retries smaller steps for ever (seen in 6.4.1). NaN values fail every
-  // convergence test.
+  // CVODES' fixed-point iteration does not stop at a failed call but retries smaller steps without end (seen in 6.4.1). NaN values fail
+  // every convergence test.
   std::ranges::fill(written, std::numeric_limits<double>::quiet_NaN());
   return -1;
 }

@@ -21,7 +21,7 @@ std::string limit_words(const check::Outcome& outcome);
 /// Returns robot, duty and motor of a check, without those that it lacks, or its command.
 std::string subject_words(const check::Check& check);
 
-/// Returns what the value rests on; empty without a value, or if it needs no explanation.
+/// Returns the basis of the value; empty without a value, or if it needs no explanation.
 std::string basis_words(const check::Outcome& outcome);
 /// States why a threshold of that limit could not be evaluated.
 std::string words_of(const check::Reason& reason, const check::Limit& limit);

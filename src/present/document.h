@@ -53,7 +53,7 @@ enum class Severity {
   background,  ///< explains how the answer was made
   note,        ///< limits the accuracy or scope of the answer
   warning,     ///< the answer may be wrong or unsafe to rely on
-  scope,       ///< names what the answer does not cover, and the command that does; shown without --explain too
+  scope,       ///< states what the answer does not cover, and the command that does; shown without --explain too
 };
 
 /// One or two sentences; the first states the consequence.

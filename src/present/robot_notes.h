@@ -1,4 +1,4 @@
-// Notes about a robot that every answer which rests on it must contain.
+// Notes about a robot that every answer that uses it must contain.
 #pragma once
 
 #include "present/document.h"

@@ -121,7 +121,7 @@ DecidingSamples deciding_samples(const MotorEvaluation& motor) {
 int most_samples(bool is_drawn) { return first_samples(is_drawn) << kMostDoublings; }
 int most_samples(const duty::Duty& duty) { return most_samples(duty.shape_data->has_unknowns()); }
 
-bool is_worth_another_round(const Prospect& prospect, int most) {
+bool may_be_decided_by(const Prospect& prospect, int most) {
   const double chance = prospect.decided_probability(most);
   return chance < 1.0 && chance >= kLeastDecision_share;
 }
@@ -143,7 +143,7 @@ std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, c
   while (options.samples < most) {
     std::vector<motor::Motor> open;
     for (const MotorEvaluation& each : results) {
-      if (each.samples_needed && (!is_drawn || is_worth_another_round(Prospect(each), most))) {
+      if (each.samples_needed && (!is_drawn || may_be_decided_by(Prospect(each), most))) {
         open.push_back(*std::ranges::find(motors, each.motor_id, &motor::Motor::id));
       }
     }

@@ -60,8 +60,8 @@ struct DecidingSamples {
   std::optional<int> half;
   std::optional<int> nine_in_ten;
 };
-/// Predicts them from the samples so far (Prospect). samples_needed() takes the observed share as the true one. Near a threshold it is
-/// several times too large, because a slightly different share needs far fewer samples. Both members are empty if the verdict is decided.
+/// Predicts these numbers from the samples so far (Prospect). Near a threshold they are several times smaller than samples_needed(), which
+/// takes the observed share as the true one: a slightly different share needs far fewer samples. Empty if the verdict is decided.
 DecidingSamples deciding_samples(const MotorEvaluation& motor);
 
 /// Returns the largest number of samples per motor that evaluate_until_decided() uses by default: first_samples() after kMostDoublings. It
@@ -72,7 +72,7 @@ int most_samples(const duty::Duty& duty);
 /// Smallest probability of a decision for which further games are played.
 inline constexpr double kLeastDecision_share = 0.2;
 /// Returns whether games up to `most` samples decide the verdict with at least that probability, and it is not decided yet.
-bool is_worth_another_round(const Prospect& prospect, int most);
+bool may_be_decided_by(const Prospect& prospect, int most);
 
 /// Returns the largest number of samples that a user can request. A drawn game takes 0.6 MB and 0.07 s of one core, which limits the
 /// number.
@@ -80,7 +80,7 @@ int most_samples_at_all(bool is_drawn);
 
 /// Draws demands as draw_demands() does, evaluates with `options.samples`, then doubles the samples of the motors whose verdict is not
 /// decided, up to `most`. On a duty with draws, where games take nearly all of the time, a motor gets more samples only while
-/// is_worth_another_round(). A longer round starts with the samples of the shorter one. `draws` receives all drawn demands; `options.draws`
+/// may_be_decided_by(). A longer round starts with the samples of the shorter one. `draws` receives all drawn demands; `options.draws`
 /// is not used. The result is sorted as by evaluate().
 std::vector<MotorEvaluation> evaluate_until_decided(const robot::Robot& robot, const duty::Duty& duty,
                                                     std::span<const duty::WheelDemand> wheels, std::span<const motor::Motor> motors,

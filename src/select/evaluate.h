@@ -92,7 +92,8 @@ struct MotorEvaluation {
   /// is exceeded. Empty if no current reaches a limit or even zero current exceeds one, and without with_current_margin.
   std::optional<double> margin_A;
   double least_torque_share = 1.0;  ///< smallest ratio of delivered to demanded current
-  double short_time_share = 0.0;    ///< share of the time in which the demand is not met; winding at its peak, at most at its limit
+  /// Share of the time in which the demand is not met, with the winding at its peak temperature, or at its limit if that is lower.
+  double short_time_share = 0.0;
   LimitingFactor short_limit = LimitingFactor::voltage;  ///< limit that causes the shortfall, if there is one
   /// Share of samples that miss the demand for longer than kTolerableShortTime; empty without samples.
   std::optional<double> short_probability = {};

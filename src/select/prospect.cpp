@@ -89,18 +89,18 @@ std::array<double, count> share_quantiles(double over, double draws) {
 }
 
 /// Returns the counts among `open` after which `most` draws decide with less than kLeastDecision_share. They surround the threshold.
-OpenCounts counts_not_worth(const OpenCounts& open, double threshold_ratio, int draws, int most) {
+OpenCounts hopeless_counts(const OpenCounts& open, double threshold_ratio, int draws, int most) {
   constexpr std::size_t kFewQuantiles = 24;
   const OpenCounts open_then = open_counts(threshold_ratio, most, true);
-  const auto is_worth = [&](int over) {
+  const auto is_probable = [&](int over) {
     return probability_of_counts(open_then, share_quantiles<kFewQuantiles>(over, draws), over, draws, most) <= 1.0 - kLeastDecision_share;
   };
   const int middle = std::clamp(static_cast<int>(std::lround(threshold_ratio * draws)), open.first, open.end - 1);
-  if (is_worth(middle)) {
+  if (is_probable(middle)) {
     return {middle, middle};
   }
-  const int first = *first_that_holds(open.first - 1, middle, [&](int over) { return !is_worth(over); });
-  return {first, first_that_holds(middle, open.end, [&](int over) { return over == open.end || is_worth(over); }).value_or(open.end)};
+  const int first = *first_that_holds(open.first - 1, middle, [&](int over) { return !is_probable(over); });
+  return {first, first_that_holds(middle, open.end, [&](int over) { return over == open.end || is_probable(over); }).value_or(open.end)};
 }
 
 }  // namespace
@@ -217,7 +217,7 @@ double Prospect::ended_probability(int samples, int most) const {
       if (open.first == open.end) {
         continue;
       }
-      const OpenCounts hopeless = counts_not_worth(open, threshold_ratio, draws, most_draws);
+      const OpenCounts hopeless = hopeless_counts(open, threshold_ratio, draws, most_draws);
       const auto probability = [&](const OpenCounts& counts) {
         return probability_of_counts(counts, share.quantiles_ratio, share.seen_count, draws_, draws);
       };

@@ -31,8 +31,9 @@ class Prospect {
   /// counted as one sample (predictive probability: Spiegelhalter et al. 1986).
   explicit Prospect(const MotorEvaluation& motor);
 
-  /// Predicts from the first games of an evaluation, whose `games` are too few for shares: the rise of the peak temperature above the air
-  /// is taken as log-normal, and the distance of the limit from its median as normal, with one observation per game.
+  /// Predicts from the first games of an evaluation, which are too few to count samples over a limit. Assumes that the peak temperature
+  /// above the air is log-normally distributed. The share over the limit follows from the median and the scatter of the samples; the
+  /// median is as uncertain as that of one observation per game.
   static Prospect of_few_games(const MotorEvaluation& few, double ambient_C);
 
   [[nodiscard]] const std::string& motor_id() const { return motor_id_; }
@@ -42,7 +43,7 @@ class Prospect {
   [[nodiscard]] double decided_probability(int samples) const;
 
   /// Returns the probability that the rounds of evaluate_until_decided() end at `samples` samples at the latest: the verdict is decided
-  /// then, or `most` samples will probably not decide it (is_worth_another_round()). Without draws only a decision ends them.
+  /// then, or `most` samples will probably not decide it (may_be_decided_by()). Without draws only a decision ends them.
   [[nodiscard]] double ended_probability(int samples, int most) const;
 
   /// Returns the probability that the verdict will be pass.

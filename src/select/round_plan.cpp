@@ -104,7 +104,7 @@ void RoundPlan::expect(std::vector<base::JobPhase> certain, std::span<const Pros
   const double scale = prospects.empty() ? 1.0 : static_cast<double>(motors_.size()) / static_cast<double>(prospects.size());
   std::vector<double> ended(prospects.size());
   std::ranges::transform(prospects, ended.begin(),
-                         [&](const Prospect& each) { return is_drawn && !is_worth_another_round(each, most_) ? 1.0 : 0.0; });
+                         [&](const Prospect& each) { return is_drawn && !may_be_decided_by(each, most_) ? 1.0 : 0.0; });
   for (int count = samples; count < most_;) {
     double none = 1.0;
     double open = 0.0;

@@ -1,4 +1,4 @@
-// Periodic steady state of a network under inputs that repeat for ever.
+// Periodic steady state of a network under inputs that repeat without end.
 #pragma once
 
 #include <optional>

@@ -48,7 +48,7 @@ TEST(OpenDirections, NoneWhereBothNodesAreSensedAndTheResistanceIsKnown) {
                               [](std::uint64_t seed) { return calibrate_case({}, short_case(seed)).calibration.open.empty(); }));
 }
 
-TEST(OpenDirections, CommonScaleOfAllHeatRestsOnTheStatedResistance) {
+TEST(OpenDirections, CommonScaleOfAllHeatDependsOnTheStatedResistance) {
   EXPECT_TRUE(holds_for_share(kClaimed_share, kSeeds, [](std::uint64_t seed) {
     const Calibration found = calibrate_case({.truth = {}, .resistance_spread = ", tolerance = \"10 %\""}, short_case(seed)).calibration;
     return has_reason(found, OpenReason::common_factor) && found.next_experiment == Remedy::four_wire_resistance &&

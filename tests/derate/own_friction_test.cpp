@@ -1,4 +1,4 @@
-// A motor that cannot turn itself for ever is refused; one that only a push would stop is not.
+// A motor that cannot turn itself continuously is refused; one that only a push would stop is not.
 #include "derate/own_friction.h"
 
 #include <gmock/gmock.h>

@@ -76,7 +76,7 @@ TEST(CoreFiles, guard_is_derated_for_the_period_of_the_core) {
   EXPECT_NE(slow.folder.config_check_sum, core().folder.config_check_sum);
 }
 
-// The lasting current lets the motor stay below its limit for ever, so its heat in the steady state must not reach the winding limit.
+// The lasting current lets the motor stay below its limit continuously, so its heat in the steady state must not reach the winding limit.
 TEST(CoreFiles, current_of_limp_mode_never_reaches_the_limit) {
   const motor::MotorValues nominal = ecx_32().nominal;
   const double I_A = core().folder.limp_current_A;

@@ -13,7 +13,7 @@ namespace {
 /// Floating-point types. `Lanes` holds several doubles, `S` is the scalar type of a law that supports both.
 const std::set<std::string, std::less<>> kFloatingTypes{"double", "float", "realtype", "Lanes", "S"};
 
-/// Last words of names of pure numbers.
+/// Final words of names of pure numbers.
 const std::set<std::string, std::less<>> kPureNumbers{"count",
                                                       "efficiency",
                                                       "sd",

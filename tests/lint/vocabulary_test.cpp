@@ -36,6 +36,10 @@ const std::map<std::string, std::string> kInstead{
     {"hold-out run", "never saw"},
     {"nominal, in its present form", "as it stands"},
     {"regressor, input signal", "driver kind|time driver|scan drivers"},
+    {"depends on, is based on", "rest(s|ed|ing)? (on|upon)"},
+    {"is, has the size of", "(is|are|was|were|be) worth"},
+    {"decision, final result", "last words?"},
+    {"permanently, continuously", "for ever|forever|for good|in the long run"},
 };
 
 /// Names that files and answers keep: the table [figures] and the key "figures" of motor files, the element <figure> of HTML and CSS, and

@@ -170,11 +170,11 @@ TEST(DecidingSamples, of_temperatures_do_not_matter_if_the_demand_is_missed) {
 }
 
 // Probabilities near a threshold need more games than anybody plays; those far from it are decided with certainty.
-TEST(Prospect, another_round_is_worth_its_time_only_if_it_may_decide) {
+TEST(Prospect, another_round_follows_only_if_it_may_decide) {
   const int most = 32 * first_samples(true);
-  EXPECT_TRUE(is_worth_another_round(Prospect(of_games(1, 75)), most));
-  EXPECT_FALSE(is_worth_another_round(Prospect(of_games(60, 1200)), most)) << "5 % of 1200";
-  EXPECT_FALSE(is_worth_another_round(Prospect(of_games(0, 75)), most)) << "decided";
+  EXPECT_TRUE(may_be_decided_by(Prospect(of_games(1, 75)), most));
+  EXPECT_FALSE(may_be_decided_by(Prospect(of_games(60, 1200)), most)) << "5 % of 1200";
+  EXPECT_FALSE(may_be_decided_by(Prospect(of_games(0, 75)), most)) << "decided";
 }
 
 // The predicted probability that a later number of games decides is the share of evaluations that it decides; so is that of the end of the
@@ -202,7 +202,7 @@ TEST(Prospect, decides_and_ends_with_the_predicted_probability) {
         const MotorEvaluation then = of_games(all, games);
         decided += then.samples_needed ? 0.0 : 1.0;
         const auto [found, is_new] = goes_on.try_emplace(all, false);
-        found->second = is_new ? then.samples < most && is_worth_another_round(Prospect(then), most) : found->second;
+        found->second = is_new ? then.samples < most && may_be_decided_by(Prospect(then), most) : found->second;
         ended += found->second ? 0.0 : 1.0;
         passes += share <= kMarginalProbability ? 1.0 : 0.0;
       }

@@ -55,7 +55,7 @@ TEST(RestOfHotMotor, is_the_shortest_that_keeps_the_limit) {
 
 TEST(RestOfHotMotor, grows_with_the_play_until_no_rest_suffices) {
   const std::vector<RestOfHotMotor> rests = rests_on(constant_current(6.1), simple_motor());
-  EXPECT_FALSE(rests.back().all_s) << "20 min are as long as forever for a motor of 20 s";
+  EXPECT_FALSE(rests.back().all_s) << "20 min are as long as a steady state for a motor of 20 s";
   EXPECT_EQ(rests.back().starts_never, rests.back().starts);
 }
 

@@ -12,7 +12,7 @@ inline constexpr double kMeanInstructions = 3000.0;
 inline constexpr double kMeanInstructionsWithFaults = 3100.0;
 /// The same with one step in ten late by up to two periods, which then has more work.
 inline constexpr double kMeanInstructionsLate = 3200.0;
-/// The same with one wheel sensor lost for good: its speed follows from the others, and each current must suit all of them.
+/// The same with one wheel sensor lost permanently: its speed follows from the others, and each current must suit all of them.
 inline constexpr double kMeanInstructionsLostSensor = 3650.0;
 /// Worst step of the asserted streams: on time or late, with or without the faults of drive_stream.h.
 inline constexpr std::uint32_t kMostInstructions = 6000;

@@ -8,7 +8,7 @@
 namespace heatsoak::target {
 
 /// Difference from a usual minute of play: one step in ten takes 1 to 3 periods; or all commands are pose targets; or one wheel sensor is
-/// lost after a second for good, without other faults.
+/// lost permanently after a second, without other faults.
 enum class Play { usual, late_steps, pose_targets, lost_wheel_sensor };
 
 /// 60000 inputs at the Config's period: commands that change 60 times per second, sensors with noise, and faults of sensors and radio link
