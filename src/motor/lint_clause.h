@@ -140,7 +140,7 @@ enum class LintWords {
   rotor_inertia_missing
 };
 
-/// A quantity that is printed with three significant digits.
+/// A quantity that is printed with three significant digits, a speed in rpm at least in whole rpm.
 struct LintQuantity {
   double value = 0.0;
   std::string_view unit;

@@ -2,7 +2,9 @@
 #include <fmt/args.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 
 #include "base/quantity.h"
@@ -32,7 +34,8 @@ constexpr std::array kSentences = std::to_array<Sentence>({
      "{} % is listed, but (1 - sqrt(I_0·R/U))² is {} %; expected 0.9 to 1.015 times that; check no-load current and resistance"},
     {LintWords::heat_capacity, "{} ({} at a mass of {})"},
     {LintWords::lasting_current,
-     "{} heat the motor to its winding limit in the long run, which is {} times the stall current of {} ({} over {}); expected 0.015 to "
+     "{} heat the motor to its winding limit in the steady state, which is {} times the stall current of {} ({} over {}); expected 0.015 "
+     "to "
      "0.5 times; check the units of resistance, voltage and thermal resistances (mohm or ohm?)"},
     {LintWords::ideal_speed,
      "{} over {} is a speed without load of {}, expected 200 to 60000 rpm; check the units of both (mN m/A or N m/A?)"},
@@ -84,11 +87,13 @@ constexpr std::array kSentences = std::to_array<Sentence>({
      "{}; hot copper and drag lose {}, which leaves {} unexplained, expected at most 15 % of the input; check nominal current, speed and "
      "torque"},
     {LintWords::assigned_power_too_large,
-     "{} are assigned, but the nominal torque {} up to the highest speed {} makes {}, expected at least the assigned power; this may be "
-     "the electrical input, check it"},
+     "the assigned power is {}, but the nominal torque {} at the highest speed {} gives only {}, expected at least the assigned power; "
+     "check "
+     "whether it is the electrical input"},
     {LintWords::assigned_power_of_type,
-     "{} are assigned to the type, but at {} and {} this winding takes {} and loses {} of it in the copper: it cannot give that power at "
-     "its nominal voltage; use torque and speed instead"},
+     "the assigned power of the type is {}, but at {} and {} this winding takes {} and loses {} of it in the copper, so it cannot give "
+     "that "
+     "power at its nominal voltage; use torque and speed instead"},
     {LintWords::nominal_speed_too_high,
      "{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected at most 3 % more; check "
      "resistance (between terminals?), nominal torque and speed"},
@@ -232,6 +237,13 @@ consteval bool is_in_order() {
 }
 static_assert(is_in_order() && kSentences.back().words == LintWords::rotor_inertia_missing, "each of LintWords has a sentence");
 
+/// Data sheets print speeds in whole rpm: 9999 rpm must not become 10000 rpm.
+int digits_of(const LintQuantity& quantity) {
+  constexpr int kUsual = 3;
+  const int whole = std::abs(quantity.value) >= 1.0 ? 1 + static_cast<int>(std::log10(std::abs(quantity.value))) : 1;
+  return quantity.unit == "rpm" ? std::max(kUsual, whole) : kUsual;
+}
+
 }  // namespace
 
 std::string text_of(const LintClause& clause) {
@@ -241,7 +253,7 @@ std::string text_of(const LintClause& clause) {
         [&facts](const auto& each) {
           using Kind = std::decay_t<decltype(each)>;
           if constexpr (std::is_same_v<Kind, LintQuantity>) {
-            facts.push_back(fmt::format("{} {}", base::significant(each.value, 3), base::unit_for_display(each.unit)));
+            facts.push_back(fmt::format("{} {}", base::significant(each.value, digits_of(each)), base::unit_for_display(each.unit)));
           } else if constexpr (std::is_same_v<Kind, LintNumber>) {
             facts.push_back(base::significant(each.value, each.digits));
           } else if constexpr (std::is_same_v<Kind, LintClause>) {

@@ -65,17 +65,17 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
           {"margin", "K", 0, kRight, kLeastForLimit, false,
            is_drawn ? "to the nearer limit, from the 95th percentile of the samples" : nominal("to the nearer limit")},
           {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
-          {"P over", "%", 2, kRight, 0, false, "share of samples over a limit"},
-          {"reached after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
+          {"over limit", "%", 2, kRight, 0, false, "share of the samples that exceed a temperature limit"},
+          {"exceeded after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
           {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
-          {"rms", "A", 5, kRight, 0, false, nominal("heating current")},
-          {"spare rms", "A", 6, kRight, 0, false, "possible increase of rms until a limit"},
+          {"current", "A rms", 5, kRight, 0, false, nominal("heating current")},
+          {"reserve", "A rms", 6, kRight, 0, false, "additional current at the same speeds until a limit is reached"},
           {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
           {"stator limit", "°C", 8},
           {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
-          {"P interval", "%", 10, kRight, 0, false,
-           "P over in the limit of infinitely many samples, with a confidence of 95 % over all repeated tests"},
-          {"p95 interval", "°C", 11, kRight, 0, false, "upper end of the peak with other samples, 95 %"}};
+          {"over limit, interval", "%", 10, kRight, 0, false,
+           "share over a limit that infinitely many samples would have, with a confidence of 95 % over all repeated tests"},
+          {"p95, interval", "°C", 11, kRight, 0, false, "range of the 95th percentile of the peak, if other samples were drawn"}};
 }
 
 std::string p95_text(const select::MotorEvaluation& motor) {
@@ -204,9 +204,10 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
     probability_ratio = std::max(probability_ratio, 0.5 * (each.probability_interval->high - each.probability_interval->low));
     p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
   }
-  return fmt::format("Sampling error (95 %): the share over a limit ±{:.0f} percentage points, the upper end of the peak {}.",
-                     std::ceil(100.0 * probability_ratio),
-                     std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown: take more samples");
+  return fmt::format(
+      "Sampling error (95 %): ±{:.0f} percentage points for the share of samples over a limit; {} for the 95th percentile of the peak.",
+      std::ceil(100.0 * probability_ratio),
+      std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown (more samples needed)");
 }
 
 void add_notes(Document& document, const select::MotorEvaluation& motor, const simulate::EvaluationAnswer& answer) {
@@ -294,20 +295,19 @@ namespace {
 std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id, double ambient_C) {
   if (rests.front().over_without_current) {
     return fmt::format(
-        "Rest of a hot {}: no rest suffices, because the motor exceeds its limits even without current in air of {:.0f} °C. All values are "
-        "nominal.",
-        motor_id, ambient_C);
+        "A hot {} never cools enough to play: it exceeds its limits even without current in air of {:.0f} °C (nominal values).", motor_id,
+        ambient_C);
   }
   std::string text;
   for (const select::RestOfHotMotor& each : rests) {
     const std::string play = duration_text(each.play_s);
-    text += each.all_s ? fmt::format(" {} of rest suffice before {} of play.", duration_text(*each.all_s), play)
-                       : fmt::format(" Before {} of play, {} of rest do not suffice at {} of {} moments of the duty.", play,
+    text += each.all_s ? fmt::format(" {} of rest for {} of play;", duration_text(*each.all_s), play)
+                       : fmt::format(" for {} of play, more than {} of rest at {} of {} moments of the duty;", play,
                                      duration_text(select::kLongestRest_s), each.starts_never, each.starts);
   }
-  return fmt::format(
-      "Rest of a hot {}, which is in steady state at its limit and then must stay within its limits:{} All values are nominal.", motor_id,
-      text);
+  text.back() = '.';
+  return fmt::format("A {} at its temperature limit needs a rest before it can play on without exceeding a limit (nominal values):{}",
+                     motor_id, text);
 }
 
 /// Returns the ranking by samples with its notes.

@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadDrive{"revolutions_per_minute", of_each([](friction::DriveRow& row) {
                    std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
                  }),
-                 2, "times the motor's back-EMF"},
+                 2, "times the back-EMF of the motor"},
         BadDrive{"other_sign",
                  of_each([](friction::DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
                  "have the wrong sign?"},
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "wheel 1 turns with hardly any voltage"},
         BadDrive{"modulations_swapped", of_each([](friction::DriveRow& row) { std::swap(row.pwm_ratio[0], row.pwm_ratio[1]); }), 2,
                  "of wheel 1"},
-        BadDrive{"battery_doubled", of_each([](friction::DriveRow& row) { row.battery_V *= 2.0; }), 2, "times the motor's back-EMF"},
+        BadDrive{"battery_doubled", of_each([](friction::DriveRow& row) { row.battery_V *= 2.0; }), 2, "times the back-EMF of the motor"},
         BadDrive{"other_order", of_each([](friction::DriveRow& row) {
                    std::swap(row.wheel_speed_rad_per_s[0], row.wheel_speed_rad_per_s[1]);
                    std::swap(row.pwm_ratio[0], row.pwm_ratio[1]);

@@ -52,7 +52,7 @@ class MotorOfDatabase : public testing::TestWithParam<std::string> {};
 TEST_P(MotorOfDatabase, has_no_contradiction) {
   for (const LintFinding& finding : lint(motor_of_database(GetParam()))) {
     EXPECT_EQ(finding.level, LintFinding::Level::note)
-        << finding.at.file << ":" << finding.at.line << ": " << finding.check << ": " << message_of(finding);
+        << base::to_string(finding.at) << ": " << finding.check << ": " << message_of(finding);
   }
 }
 
@@ -235,7 +235,7 @@ TEST(WrongValues, are_found_at_their_line) {
 
 struct Slip {
   std::string name;
-  std::variant<double MotorValues::*, std::optional<double> MotorValues::*> figure;
+  std::variant<double MotorValues::*, std::optional<double> MotorValues::*> parameter;
   double factor;
   std::vector<std::string> expected;
 };
@@ -244,10 +244,10 @@ class SlipOfASheet : public testing::TestWithParam<Slip> {};
 
 TEST_P(SlipOfASheet, fires_its_checks_only) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  if (const auto* const required = std::get_if<double MotorValues::*>(&GetParam().figure)) {
+  if (const auto* const required = std::get_if<double MotorValues::*>(&GetParam().parameter)) {
     motor.nominal.** required *= GetParam().factor;
   } else {
-    *(motor.nominal.*std::get<std::optional<double> MotorValues::*>(GetParam().figure)) *= GetParam().factor;
+    *(motor.nominal.*std::get<std::optional<double> MotorValues::*>(GetParam().parameter)) *= GetParam().factor;
   }
 
   EXPECT_THAT(errors(motor), testing::ElementsAreArray(GetParam().expected));
@@ -355,7 +355,7 @@ TEST(Lint, notes_estimates_and_missing_spreads) {
 // Agreed values have no spread, manufactured quantities have one, and every value has a source.
 TEST(Lint, asks_every_value_for_a_source_and_every_built_one_for_a_spread) {
   const Motor good = motor_of_database("maxon_ec45_flat_70w_24v");
-  for (const auto& [key, figure] : good.parameters) {
+  for (const auto& [key, parameter] : good.parameters) {
     Motor motor = good;
     motor.parameters.at(key).source.clear();
     EXPECT_THAT(errors(motor), ElementsAre("sources")) << key;
@@ -367,10 +367,10 @@ TEST(Lint, asks_every_value_for_a_source_and_every_built_one_for_a_spread) {
 
 TEST(Lint, asks_the_values_of_an_effect_for_a_source) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-  base::ParameterValue figure;
-  figure.value = 40.0;
-  figure.printed = "40 K/W";
-  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {figure}});
+  base::ParameterValue parameter;
+  parameter.value = 40.0;
+  parameter.printed = "40 K/W";
+  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {parameter}});
 
   EXPECT_THAT(said_by("sources", motor), HasSubstr("flange.thermal_resistance of 40 K/W names no source"));
 }
@@ -419,11 +419,11 @@ TEST(RequiredValues, ASlipOfTheUnitIsFound) {
 
 // Values that are too good would make every verdict optimistic.
 TEST(Lint, warns_of_thermal_values_that_no_known_sheet_has) {
-  for (const auto& [figure, factor] : {std::pair(&MotorValues::thermal_resistance_winding_stator_K_per_W, 0.5),
-                                       {&MotorValues::thermal_resistance_stator_ambient_K_per_W, 0.5},
-                                       {&MotorValues::winding_limit_C, 155.0 / 125.0}}) {
+  for (const auto& [parameter, factor] : {std::pair(&MotorValues::thermal_resistance_winding_stator_K_per_W, 0.5),
+                                          {&MotorValues::thermal_resistance_stator_ambient_K_per_W, 0.5},
+                                          {&MotorValues::winding_limit_C, 155.0 / 125.0}}) {
     Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
-    motor.nominal.*figure *= factor;
+    motor.nominal.*parameter *= factor;
     EXPECT_THAT(checks_with(LintFinding::Level::warning, motor), ElementsAre("nominal_point_heat"));
     EXPECT_THAT(said_by("nominal_point_heat", motor), HasSubstr("as on known sheets"));
   }
@@ -433,11 +433,11 @@ TEST(Lint, warns_of_thermal_values_that_no_known_sheet_has) {
 TEST(Lint, judges_the_nominal_point_without_the_effects_of_the_file) {
   Motor motor = motor_of_database("maxon_ec45_flat_70w_24v");
   const NominalPointHeat sheet = nominal_point_heat(motor).value();
-  base::ParameterValue figure;
-  figure.value = 2.0;
-  figure.printed = "2 K/W";
-  figure.derivation = "a heat sink";
-  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {figure}});
+  base::ParameterValue parameter;
+  parameter.value = 2.0;
+  parameter.printed = "2 K/W";
+  parameter.derivation = "a heat sink";
+  motor.effects.push_back({"flange", thermal::find_effect("conduction"), {"winding", "ambient"}, {parameter}});
 
   EXPECT_EQ(nominal_point_heat(motor)->limit_current_A, sheet.limit_current_A);
   EXPECT_THAT(errors(motor), ElementsAre());
@@ -456,7 +456,19 @@ TEST(Lint, values_of_a_fit_that_differ_from_the_sheet_are_only_noted) {
 
 // The 48 V winding of a 70 W motor gives 36 W at its own voltage, which is unusual but correct.
 TEST(Lint, name_plate_of_the_type_is_only_noted) {
-  EXPECT_THAT(said_by("assigned_power", motor_of_database("maxon_ec45_flat_70w_48v_402687")), HasSubstr("70 W are assigned to the type"));
+  EXPECT_THAT(said_by("assigned_power", motor_of_database("maxon_ec45_flat_70w_48v_402687")),
+              HasSubstr("the assigned power of the type is 70 W"));
+}
+
+// Data sheets print speeds in whole rpm. Three digits would make 10000 rpm of 9999 rpm.
+TEST(Lint, speeds_are_printed_in_whole_rpm) {
+  const auto words = [](double value, std::string_view unit) {
+    return text_of(LintClause{LintWords::heat_capacity, {LintQuantity{value, unit}, LintQuantity{1.0, unit}, LintQuantity{1.0, unit}}});
+  };
+  EXPECT_THAT(words(9999.0, "rpm"), HasSubstr("9999 rpm"));
+  EXPECT_THAT(words(12345.4, "rpm"), HasSubstr("12345 rpm"));
+  EXPECT_THAT(words(45.26, "rpm"), HasSubstr("45.3 rpm"));
+  EXPECT_THAT(words(9999.0, "W"), HasSubstr("10000 W"));
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ TEST(WordsOfFriction, Suspicions) {
        "31 % of the wheels' speeds fit no motion of the robot: do their order or signs differ from the robot's file?"},
       {VoltageFallsWithSpeed{}, "voltage falls as the wheels turn faster: does one of them have the wrong sign?"},
       {DampingDiffersFromBackEmf{9.5},
-       "d is 9.5 times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its motor, a "
+       "the fitted voltage per speed (d) is 9.5 times the back-EMF of the motor, expected 1 to 2 times: is a speed in rpm or that of the "
+       "wheel instead of its motor, a "
        "modulation in percent, a voltage in millivolts or too high, or is it another motor?"},
       {MoreWheelsThanRobot{4, 3}, "the log has values of wheel 4, but the robot's file has 3 wheels: is it the log of another robot?"},
       {WheelWithoutVoltage{2}, "wheel 2 turns with hardly any voltage: is its modulation missing from the log?"},
@@ -38,7 +39,8 @@ TEST(WordsOfFriction, Suspicions) {
       {WheelVoltageUnexplained{2, 0.456},
        "voltage of wheel 2 hardly follows its speed and direction (R² 0.46): is its modulation that of another wheel?"},
       {WheelDampingDiffers{2, 4.0},
-       "d of wheel 2 is 4 times the motor's back-EMF, expected 1 to 2 times: is its speed or modulation in another unit?"},
+       "the fitted voltage per speed (d) of wheel 2 is 4 times the back-EMF of the motor, expected 1 to 2 times: is its speed or "
+       "modulation in another unit?"},
   });
   EXPECT_THAT(words_of(std::vector<SuspicionOfTest>{{"run1", recording::PowerOppositeToBus{}}, {"", VoltageFallsWithSpeed{}}}),
               ElementsAre("run1: power_in_W and bus_V × bus_A have opposite signs",

@@ -41,7 +41,8 @@ TEST(WordsOfFailures, FindingsOfLogs) {
   const base::Failure wrong = told(calibration::LogsLookWrong({{"run1.csv", recording::CurrentTooLarge{"current_A", 8000.0}}}));
   EXPECT_THAT(wrong.message(), EndsWith("or use --as-is if they are right"));
   ASSERT_EQ(wrong.diagnostics().size(), 1U);
-  EXPECT_EQ(to_string(wrong.diagnostics()[0]), "run1.csv: error: current_A reaches 8000 A: is it in milliamperes?");
+  EXPECT_EQ(to_string(wrong.diagnostics()[0]),
+            "run1.csv: error: current_A reaches 8000 A: is it in milliamperes?; if so, state unit = \"mA\" in a mapping (--map)");
   const base::Failure plain(base::ExitCode::numerics_failed, "did not converge");
   EXPECT_STREQ(told(plain).what(), plain.what());
 }

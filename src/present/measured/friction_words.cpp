@@ -71,9 +71,9 @@ std::string say(const friction::VoltageFallsWithSpeed& /*of*/) {
 
 std::string say(const friction::DampingDiffersFromBackEmf& of) {
   return fmt::format(
-      "d is {} times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or that of the wheel instead of its motor, a "
-      "modulation "
-      "in percent, a voltage in millivolts or too high, or is it another motor?",
+      "the fitted voltage per speed (d) is {} times the back-EMF of the motor, expected 1 to 2 times: is a speed in rpm or that of the "
+      "wheel "
+      "instead of its motor, a modulation in percent, a voltage in millivolts or too high, or is it another motor?",
       base::significant(of.ratio, 2));
 }
 
@@ -102,8 +102,11 @@ std::string say(const friction::WheelVoltageUnexplained& of) {
 }
 
 std::string say(const friction::WheelDampingDiffers& of) {
-  return fmt::format("d of wheel {} is {} times the motor's back-EMF, expected 1 to 2 times: is its speed or modulation in another unit?",
-                     of.wheel, base::significant(of.ratio, 2));
+  return fmt::format(
+      "the fitted voltage per speed (d) of wheel {} is {} times the back-EMF of the motor, expected 1 to 2 times: is its speed or "
+      "modulation in "
+      "another unit?",
+      of.wheel, base::significant(of.ratio, 2));
 }
 
 }  // namespace

@@ -15,59 +15,85 @@ namespace {
 
 using base::significant;
 
+/// Advice for a column in another unit, or without the unit if it is not known.
+std::string if_unit(std::string_view unit = "") {
+  return fmt::format("; if so, state unit = {} in a mapping (--map)", unit.empty() ? "\"…\"" : fmt::format("\"{}\"", unit));
+}
+
+std::string_view unit_of(recording::TimeUnit unit) {
+  switch (unit) {
+    case recording::TimeUnit::microseconds:
+      return "us";
+    case recording::TimeUnit::milliseconds:
+      return "ms";
+    case recording::TimeUnit::minutes:
+      return "min";
+    case recording::TimeUnit::hours:
+      break;
+  }
+  return "h";
+}
+
+constexpr std::string_view kIfSign = "; if so, state sign = \"-\" in a mapping (--map)";
+constexpr std::string_view kIfSwapped = "; if so, swap their columns in a mapping (--map)";
+
 std::string say(const recording::CurrentTooLarge& of) {
-  return fmt::format("{} reaches {} A: is it in milliamperes?", of.channel, significant(of.top_A, 3));
+  return fmt::format("{} reaches {} A: is it in milliamperes?{}", of.channel, significant(of.top_A, 3), if_unit("mA"));
 }
 
 std::string say(const recording::PowerDiffersFromBus& of) {
-  return fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?", significant(of.ratio, 3));
+  return fmt::format("power_in_W is {} times bus_V × bus_A: is one of them in another unit?{}", significant(of.ratio, 3), if_unit());
 }
 
-std::string say(const recording::PowerOppositeToBus& /*of*/) { return "power_in_W and bus_V × bus_A have opposite signs"; }
+std::string say(const recording::PowerOppositeToBus& /*of*/) {
+  return fmt::format("power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong?{}", kIfSign);
+}
 
 std::string say(const recording::TorqueOppositeToCurrent& /*of*/) {
-  return "torque_Nm and current_A have opposite signs: is the sign of one of them wrong?";
+  return fmt::format("torque_Nm and current_A have opposite signs: is the sign of one of them wrong?{}", kIfSign);
 }
 
 std::string say(const recording::SpeedTooLarge& of) {
   constexpr double kRpm = 30.0 / std::numbers::pi;
-  return fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?", of.channel,
+  return fmt::format("{} reaches {} rad/s: is it in rpm ({} rad/s) or degrees per second ({} rad/s)?{}", of.channel,
                      significant(of.top_rad_per_s, 4), significant(of.top_rad_per_s / kRpm, 3),
-                     significant(of.top_rad_per_s * std::numbers::pi / 180.0, 3));
+                     significant(of.top_rad_per_s * std::numbers::pi / 180.0, 3), if_unit("rpm"));
 }
 
 std::string say(const recording::ShaftPowerExceedsInput& of) {
   return fmt::format(
       "torque_Nm × speed_rad_per_s is {} times power_in_W, more than the input: is the speed in rpm (÷ 9.55) or degrees per second (÷ "
-      "57.3)?",
-      significant(of.ratio, 3));
+      "57.3)?{}",
+      significant(of.ratio, 3), if_unit("rpm"));
 }
 
 std::string say(const recording::AngleSpansDegrees& of) {
-  return fmt::format("{} spans {} rad: is it in degrees?", of.channel, significant(of.span_rad, 3));
+  return fmt::format("{} spans {} rad: is it in degrees?{}", of.channel, significant(of.span_rad, 3), if_unit("deg"));
 }
 
 std::string say(const recording::WheelRowsFarApart& of) {
-  return fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?", significant(of.period_s, 3));
+  return fmt::format("the speeds of wheels are {} s apart: is the time in milliseconds?{}", significant(of.period_s, 3), if_unit("ms"));
 }
 
 std::string say(const recording::ModulationAboveOne& of) {
-  return fmt::format("{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage", of.channel,
-                     significant(of.top_ratio, 3));
+  return fmt::format(
+      "{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage; if so, scale it with an "
+      "expression in a mapping (--map)",
+      of.channel, significant(of.top_ratio, 3));
 }
 
 std::string say(const recording::VoltageTooLarge& of) {
-  return fmt::format("{} reaches {} V: is it in millivolts?", of.channel, significant(of.top_V, 3));
+  return fmt::format("{} reaches {} V: is it in millivolts?{}", of.channel, significant(of.top_V, 3), if_unit("mV"));
 }
 
 std::string say(const recording::LastsForDays& of) {
-  return fmt::format("the log lasts {} days at {} s per row: is the time in {}?", significant(of.duration_s / 86400.0, 3),
-                     significant(of.period_s, 3), words_of(of.suspected));
+  return fmt::format("the log lasts {} days at {} s per row: is the time in {}?{}", significant(of.duration_s / 86400.0, 3),
+                     significant(of.period_s, 3), words_of(of.suspected), if_unit(unit_of(of.suspected)));
 }
 
 std::string say(const recording::FallsTooFast& of) {
-  return fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?", significant(of.period_s, 3), of.channel,
-                     significant(of.fall_K, 2), significant(of.fall_s, 2), words_of(of.suspected));
+  return fmt::format("the rows are {} s apart and {} falls by {} K in {} s: is the time in {}?{}", significant(of.period_s, 3), of.channel,
+                     significant(of.fall_K, 2), significant(of.fall_s, 2), words_of(of.suspected), if_unit(unit_of(of.suspected)));
 }
 
 std::string delay_text(double delay_s, double uncertainty_s) {
@@ -83,73 +109,81 @@ std::string say(const recording::RespondsEarly& of) {
 }
 
 std::string say(const recording::ConstantSensor& of) {
-  return fmt::format("{} is constant, {} °C, while {} changes by {} K: is its sensor connected?", of.channel, significant(of.value_C, 4),
-                     of.moving, significant(of.moves_K, 3));
+  return fmt::format(
+      "{} is constant, {} °C, while {} changes by {} K: is its sensor connected? If not, leave its column out of a mapping (--map)",
+      of.channel, significant(of.value_C, 4), of.moving, significant(of.moves_K, 3));
 }
 
 std::string say(const recording::StaysAtLimit& of) {
-  return fmt::format("{} stays at exactly {} {} in {:.0f} % of its rows: a limit, or a saturated sensor?", of.channel,
-                     significant(of.value, 5), base::unit_for_display(of.unit),
-                     100.0 * static_cast<double>(of.samples_there) / static_cast<double>(of.samples));
+  return fmt::format(
+      "{} stays at exactly {} {} in {:.0f} % of its rows: is the sensor saturated? If so, state saturates_high or saturates_low in a "
+      "mapping (--map)",
+      of.channel, significant(of.value, 5), base::unit_for_display(of.unit),
+      100.0 * static_cast<double>(of.samples_there) / static_cast<double>(of.samples));
 }
 
 std::string say(const recording::AmbientAboveMotor& of) {
-  return fmt::format("ambient_C is hotter than {} most of the time (by {} K): are the channels swapped?", of.channel,
-                     significant(of.above_K, 2));
+  return fmt::format("ambient_C is hotter than {} most of the time (by {} K): are the channels swapped?{}", of.channel,
+                     significant(of.above_K, 2), kIfSwapped);
 }
 
 std::string say(const recording::FallsWhileHeated& of) {
-  return fmt::format("{} falls while {} heats and rises while it rests: is the sign of the sensor wrong?", of.channel, of.heat_input);
+  return fmt::format(
+      "{} falls while {} heats and rises while it rests: is the sign of the sensor wrong? If so, correct it with an "
+      "expression in a mapping (--map)",
+      of.channel, of.heat_input);
 }
 
 std::string say(const recording::StatorRespondsFaster& of) {
-  return fmt::format("stator_C responds to {} faster than winding_C and varies more ({} K against {} K): are the two swapped?",
-                     of.heat_input, significant(of.stator_K, 3), significant(of.winding_K, 3));
+  return fmt::format("stator_C responds to {} faster than winding_C and varies more ({} K against {} K): are the two swapped?{}",
+                     of.heat_input, significant(of.stator_K, 3), significant(of.winding_K, 3), kIfSwapped);
 }
 
 std::string say(const recording::StatorHotterAtRest& of) {
-  return fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?",
-                     significant(of.above_K, 2));
+  return fmt::format("without heat, stator_C is hotter than winding_C (by {} K) and falls by more: are the two swapped?{}",
+                     significant(of.above_K, 2), kIfSwapped);
 }
 
 std::string say(const recording::StatorWarmsFirst& of) {
   return fmt::format(
-      "at standstill {} heats stator_C by {} K while winding_C is {} K cooler: are the two swapped, or is a sensor elsewhere?",
-      of.heat_input, significant(of.stator_rise_K, 2), significant(of.winding_below_K, 2));
+      "at standstill {} heats stator_C by {} K while winding_C is {} K cooler: are the two swapped, or is a sensor elsewhere?{}",
+      of.heat_input, significant(of.stator_rise_K, 2), significant(of.winding_below_K, 2), kIfSwapped);
 }
 
 struct ScaleWords {
   std::string_view name;
-  int digits;  ///< digits of the value as logged
+  int digits;             ///< digits of the value as logged
+  std::string_view unit;  ///< text for a mapping; empty for a scale that is no unit
 };
 
 ScaleWords scale_words(recording::TemperatureScale scale) {
   switch (scale) {
     case recording::TemperatureScale::tenths_of_degrees:
-      return {"tenths of degrees", 4};
+      return {"tenths of degrees", 4, ""};
     case recording::TemperatureScale::kelvin:
-      return {"kelvin", 4};
+      return {"kelvin", 4, "K"};
     case recording::TemperatureScale::fahrenheit:
       break;
   }
-  return {"degrees Fahrenheit", 3};
+  return {"degrees Fahrenheit", 3, "degF"};
 }
 
 std::string say(const recording::StartsInOtherScale& of) {
   const ScaleWords scale = scale_words(of.suspected);
-  return fmt::format("{} starts at {} °C: is it in {} ({} °C)?", of.channel, significant(of.start_C, scale.digits), scale.name,
-                     significant(of.converted_C, 3));
+  return fmt::format("{} starts at {} °C: is it in {} ({} °C)?{}", of.channel, significant(of.start_C, scale.digits), scale.name,
+                     significant(of.converted_C, 3),
+                     scale.unit.empty() ? "; if so, divide it by 10 with an expression in a mapping (--map)" : if_unit(scale.unit));
 }
 
 std::string say(const recording::MotorStartsInFahrenheit& of) {
-  return fmt::format("{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?",
-                     of.channel, significant(of.start_C, 3), significant(of.ambient_C, 3), significant(of.converted_C, 3));
+  return fmt::format("{} and the motor's other temperatures start at {} °C in air of {} °C: are they in degrees Fahrenheit ({} °C)?{}",
+                     of.channel, significant(of.start_C, 3), significant(of.ambient_C, 3), significant(of.converted_C, 3), if_unit("degF"));
 }
 
 std::string say(const recording::MotorCoolsInFahrenheit& of) {
   return fmt::format(
-      "{} reaches a steady state of {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?",
-      of.channel, significant(of.rest_C, 3), significant(of.ambient_C, 3), significant(of.converted_C, 3));
+      "{} reaches a steady state of {} °C without heat, in air of {} °C: are the motor's temperatures in degrees Fahrenheit ({} °C)?{}",
+      of.channel, significant(of.rest_C, 3), significant(of.ambient_C, 3), significant(of.converted_C, 3), if_unit("degF"));
 }
 
 std::string say(const recording::IntervalsTooShort& /*of*/) { return "the intervals without a gap are too short"; }
