@@ -15,6 +15,7 @@
 #include "check/limit_words.h"
 #include "check/number_limit.h"
 #include "derate/option_quantities.h"
+#include "duty/file_kind.h"
 #include "input/reader.h"
 #include "motor/conditions.h"
 
@@ -80,11 +81,11 @@ class CheckReader {
         table_.problem(key, failure.message());
       }
       for (base::Diagnostic each : failure.diagnostics()) {
-        if (each.at.line == 0 && each.key.empty()) {
+        if (!each.at.line && each.key.empty()) {
           table_.problem(key, fmt::format("{}: {}", each.at.file, each.message));  // the file cannot be read at all
           continue;
         }
-        if (each.at.line == 0) {
+        if (!each.at.line) {
           each.at = input::place_of(each.at.file, each.key);
         }
         if (reported_.insert(base::to_string(each)).second) {
@@ -450,6 +451,12 @@ class CheckReader {
 CheckFile read_check_file(const fs::path& path, const input::DataFolders& folders, const CheckInputs& check_inputs) {
   const input::Value root = input::read_toml(path);
   base::Diagnostics diagnostics;
+  if (const std::optional<duty::FileKind> kind = duty::evident_kind(root); kind && root.find("check") == nullptr) {
+    throw base::bad_input({path.string()}, "",
+                          fmt::format("is a {} file; expected a file with [[check]] tables, as `heatsoak check --help` shows. `heatsoak "
+                                      "lint FILE` checks a {} file",
+                                      duty::to_string(*kind), duty::to_string(*kind)));
+  }
   if (const input::Value* one = root.find("check"); one != nullptr && one->kind == input::Value::Kind::table) {
     throw base::bad_input(one->at, "check", "is a single table; expected [[check]], in two brackets, for each check");
   }

@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -73,7 +74,7 @@ std::string verb_of(const CLI::App& app) {
 base::Failure with_places(const base::Failure& failure) {
   std::vector<base::Diagnostic> all(failure.diagnostics().begin(), failure.diagnostics().end());
   for (base::Diagnostic& each : all) {
-    if (each.at.line == 0 && !each.key.empty() && each.at.file.ends_with(".toml")) {
+    if (!each.at.line && !each.key.empty() && each.at.file.ends_with(".toml")) {
       each.at = input::place_of(each.at.file, each.key);
     }
   }
@@ -88,7 +89,7 @@ std::string annotations_of(const base::Failure& failure) {
   };
   std::string text;
   for (const base::Diagnostic& each : failure.diagnostics()) {
-    if (each.at.line > 0 && environment("GITHUB_ACTIONS") == "true") {
+    if (each.at.line && environment("GITHUB_ACTIONS") == "true") {
       text += present::annotation(each.at, environment("GITHUB_WORKSPACE"), each.key.empty() ? "heatsoak" : each.key, each.message);
     }
   }
@@ -296,6 +297,19 @@ std::vector<Command> all_commands() {
   return all;
 }
 
+namespace {
+
+/// Returns why stdout could not be written. `error` is 0 if an earlier write failed.
+std::string_view stdout_problem(int error) {
+  if (error == EBADF || fcntl(STDOUT_FILENO, F_GETFD) == -1) {
+    return "stdout is closed, so the answer is lost; expected a terminal, a file or a pipe, or --json FILE\n";
+  }
+  return error == ENOSPC || error == EFBIG ? "stdout cannot be written: the disk is full or the file too large\n"
+                                           : "stdout cannot be written; expected a terminal, a file or a pipe\n";
+}
+
+}  // namespace
+
 int run_program(int argc, const char* const* argv) {
   // With SIGXFSZ ignored, a file beyond the user's size limit fails like a full disk, with a message.
   (void)std::signal(SIGXFSZ, SIG_IGN);
@@ -303,8 +317,9 @@ int run_program(int argc, const char* const* argv) {
   Session session;
   try {
     const int code = parse_and_run(argc, argv, session);
+    errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      put(stderr, "stdout cannot be written: is the disk full?\n");
+      put(stderr, stdout_problem(errno));
       return static_cast<int>(base::ExitCode::bad_input);
     }
     return code;

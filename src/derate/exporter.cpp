@@ -1,5 +1,8 @@
 #include "derate/exporter.h"
 
+#include <algorithm>
+#include <filesystem>
+
 #include "derate/exporters_registry.h"
 
 namespace heatsoak::derate {
@@ -14,6 +17,17 @@ const std::vector<ExporterType>& all_exporters() {
     return types;
   }();
   return all;
+}
+
+const ExporterType* exporter_of_ending(std::string_view ending) {
+  const auto found = ending.empty() ? all_exporters().end() : std::ranges::find(all_exporters(), ending, &ExporterType::file_ending);
+  return found == all_exporters().end() ? nullptr : &*found;
+}
+
+const ExporterType* expected_by_name(const ExporterType& exporter, std::string_view file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  const bool suits = ending == (exporter.file_ending.empty() ? exporter.usual_ending : exporter.file_ending);
+  return suits ? nullptr : exporter_of_ending(ending);
 }
 
 }  // namespace heatsoak::derate

@@ -9,6 +9,19 @@
 
 namespace heatsoak::duty {
 
+namespace {
+
+/// States how to use a table in place of a TOML file.
+std::string csv_words(FileKind kind) {
+  const std::string begin = fmt::format("is a CSV table; expected a {} file (TOML)", to_string(kind));
+  return kind == FileKind::duty ? begin +
+                                      " with shape = \"recorded\" that names the table, see `heatsoak describe recorded`; `heatsoak duty "
+                                      "--import` writes both from the log of a game"
+                                : begin;
+}
+
+}  // namespace
+
 template <class Read>
 auto NamedFiles::attempt(const Read& read) -> std::optional<decltype(read())> {
   try {
@@ -66,6 +79,9 @@ std::filesystem::path NamedFiles::file(FileKind kind, const std::string& name) c
   std::filesystem::path path = input::file_of(folder, to_string(kind), name);
   if (path.string() != name) {
     return path;  // an id: the folder determines the kind
+  }
+  if (std::error_code error; path.extension() == ".csv" && std::filesystem::exists(path, error)) {
+    throw base::bad_input({name}, "", csv_words(kind));
   }
   const FileKind found = evident_kind(input::read_toml(path)).value_or(kind);
   if (found != kind) {

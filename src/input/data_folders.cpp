@@ -79,9 +79,10 @@ std::vector<std::string> ids_in(const fs::path& folder) {
 
 fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view name) {
   const std::vector<std::string> ids = ids_in(folder);
-  if (name.find('/') != std::string_view::npos || name.ends_with(".toml")) {
+  std::error_code error;
+  const bool is_table = name.ends_with(".csv") && fs::exists(name, error);
+  if (name.find('/') != std::string_view::npos || name.ends_with(".toml") || is_table) {
     const std::string stem = fs::path(name).stem().string();
-    std::error_code error;
     if (!fs::exists(name, error) && fs::path(name).filename() == name && std::ranges::find(ids, stem) != ids.end()) {
       throw base::Failure(base::ExitCode::bad_input,
                           fmt::format("there is no file {} in this folder; did you mean the {} '{}'?", name, kind, stem));

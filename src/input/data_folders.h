@@ -24,8 +24,8 @@ struct DataFolders {
 /// Returns the stems of the *.toml files in a folder, sorted; empty if the folder cannot be read.
 std::vector<std::string> ids_in(const std::filesystem::path& folder);
 
-/// Returns the path of the file `name` in the folder. A name with a '/' or ending in ".toml" is a path of the user and returned as it is.
-/// Throws Failure (bad_input) with "did you mean" for an unknown name. `kind` is used in the message: "motor".
+/// Returns the path of the file `name` in the folder. A name with a '/' or ending in ".toml", and an existing CSV file, is a path of the
+/// user and returned as it is. Throws Failure (bad_input) with "did you mean" for an unknown name. `kind` is used in the message: "motor".
 std::filesystem::path file_of(const std::filesystem::path& folder, std::string_view kind, std::string_view name);
 
 /// Returns `name`, or the log shipped with the program if `name` is relative and exists only there.

@@ -11,6 +11,7 @@
 #include "base/version.h"
 #include "derate/derating_json.h"
 #include "derate/export_text.h"
+#include "derate/exporter.h"
 #include "derate/own_friction.h"
 #include "derate/power_off.h"
 #include "motor/datasheet_network.h"
@@ -282,8 +283,14 @@ std::string words_of(const derate::SensorDifference& difference) {
   return fmt::format("the header was generated with{} use its options or generate the header again", options);
 }
 
-Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer) {
+Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer, const std::string& out) {
   Document document = document_of(answer.derating, job.motor);
+  if (const derate::ExporterType* const expected = job.exporter ? derate::expected_by_name(*job.exporter, out) : nullptr) {
+    document.add_note(
+        Severity::warning,
+        fmt::format("{} may be read wrongly: its name is that of a {} file, but its format is {}; rename it, or leave out --to", out,
+                    expected->name, job.exporter->name));
+  }
   add_robot_notes(document, job.robot);
   document.data = derate::derating_json(answer.derating);
   if (answer.check) {

@@ -15,7 +15,8 @@ std::string limit_range_words(const derate::Derating& derating);
 std::string words_of(const derate::SensorDifference& difference);
 
 /// Returns the document. Changes since an earlier table was written come last: unsafe ones are warnings, the others notes.
-Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer);
+/// `out` is the name of the written file, which may be empty: a name that suits another format gives a warning.
+Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer, const std::string& out = {});
 Json table_check_json(const derate::TableCheck& check);
 
 }  // namespace heatsoak::present

@@ -1,9 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
+
 #include "firmware/core_diagram.h"
 #include "present/description.h"
 #include "present/parameter_table.h"
+#include "present/topics.h"
 #include "present/verdict_topic.h"
 
 namespace heatsoak::present {
@@ -79,7 +86,11 @@ Document command_limits_description() {
 }
 
 Document verdict_description() {
-  Document document{.headline = {{"verdict: the result of `evaluate` for a motor on a duty, from the best to the worst"}},
+  Document document{.headline = {{fmt::format(
+                        "verdict: the result of `evaluate` for a motor on a duty. From the best to the worst: pass; marginal (more than "
+                        "{:.0f} % of the samples exceed a limit or miss the demand); fail (a limit is exceeded); infeasible (voltage or "
+                        "current is too low). Undecided: more samples are needed.",
+                        100.0 * select::kMarginalProbability)}},
                     .paragraphs = {}};
   Table table = labelled_table("");
   for (const VerdictMeaning& each : verdict_meanings()) {
@@ -95,6 +106,20 @@ Document verdict_description() {
                     "With --closed-loop: fail if the first game or more than half of the games exceed a limit; infeasible if a game was "
                     "not driven; marginal if any other game exceeds a limit.");
   return document;
+}
+
+std::optional<Document> one_verdict_description(std::string_view name) {
+  std::vector<std::pair<std::string_view, std::string>> all{{"undecided", undecided_meaning()}};
+  for (const VerdictMeaning& each : verdict_meanings()) {
+    all.emplace_back(select::to_string(each.verdict), each.meaning);
+  }
+  const auto found = std::ranges::find(all, name, [](const auto& each) { return each.first; });
+  if (found == all.end()) {
+    return std::nullopt;
+  }
+  Document document{.headline = {{fmt::format("{}: a verdict of `evaluate` on a motor", name)}}, .paragraphs = {found->second}};
+  document.add_note(Severity::scope, "`heatsoak describe verdict` explains all verdicts.");
+  return described(std::move(document), {{"kind", "verdict"}, {"id", name}, {"meaning", found->second}});
 }
 
 Document core_description() {

@@ -1,6 +1,7 @@
 // Documents of `describe`: motors, robots, duties, effects, thresholds, verdicts and the drive core.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,8 @@ Document threshold_description(const check::ThresholdType& type);
 /// Describes the checks with a command, whose limits are on numbers of its answer.
 Document command_limits_description();
 Document verdict_description();
+/// Describes one verdict, such as "pass" or "undecided"; nothing if there is none of this name.
+std::optional<Document> one_verdict_description(std::string_view name);
 
 /// Describes the blocks of the drive core with the signals that they read and write.
 Document core_description();

@@ -137,6 +137,9 @@ Document description_of(const std::string& name, const input::DataFolders& folde
   if (const auto found = std::ranges::find(topics, name, &Topic::id); found != topics.end()) {
     return found->document();
   }
+  if (std::optional<Document> verdict = one_verdict_description(name)) {
+    return *std::move(verdict);
+  }
   if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
     throw base::Failure(
         base::ExitCode::bad_input,

@@ -226,5 +226,28 @@ TEST(Import, of_a_missing_robot_lists_the_present_ones) {
               AllOf(HasSubstr("there is no robot 'yellow 3'"), HasSubstr("the log has blue 7"), HasSubstr("time must increase")));
 }
 
+// Each file is valid, but of another kind than expected: one message says so, instead of one for each unknown key.
+TEST(OtherKind, a_robot_or_motor_file_is_no_check_file) {
+  for (const auto& [file, kind] : {std::pair(kRobotFile, "robot"), std::pair(kMotorFile, "motor"), std::pair(kDutyFile, "duty")}) {
+    const ProgramRun result = run({"check", file});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, AllOf(HasSubstr(std::string("is a ") + kind + " file"), HasSubstr("[[check]]"), Not(HasSubstr("unknown"))));
+  }
+}
+
+TEST(OtherKind, a_table_is_no_duty_and_the_message_says_how_to_use_it) {
+  const TemporaryFolder folder;
+  write(folder.path() / "log.csv", "time_s,torque_Nm,speed_rad_per_s\n0,0.1,100\n1,0.1,100\n");
+  RunOptions inside;
+  inside.folder = folder.path();
+  for (const std::string& name : {std::string("log.csv"), (folder.path() / "log.csv").string()}) {
+    const ProgramRun result = run({"evaluate", "--robot", "tigers_v2020", "--duty", name, "--motors", "maxon_dcx19s_24v"}, inside);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("is a CSV table"), HasSubstr("describe recorded"), HasSubstr("--import")));
+  }
+  EXPECT_THAT(run({"evaluate", "--robot", "tigers_v2020", "--duty", "gone.csv", "--motors", "maxon_dcx19s_24v"}, inside).err,
+              HasSubstr("no duty 'gone.csv'"));
+}
+
 }  // namespace
 }  // namespace heatsoak

@@ -62,6 +62,12 @@ TEST(Unwritable, full_disk_is_reported_and_the_device_survives) {
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
+TEST(Unwritable, closed_stdout_is_named) {
+  const ProgramRun result = run_line("heatsoak list motors >&-");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("stdout is closed"));
+}
+
 TEST(Unwritable, stderr_does_not_crash_it) {
   RunOptions full;
   full.stderr_file = "/dev/full";

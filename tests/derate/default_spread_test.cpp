@@ -25,9 +25,9 @@ DerateOptions few_samples() {
 /// number and removing it would change the remaining draws.
 motor::Motor stripped(motor::Motor motor, unsigned seed) {
   std::mt19937 engine(seed);
-  for (auto& [key, figure] : motor.parameters) {
+  for (auto& [key, parameter] : motor.parameters) {
     if (motor::needs_spread(key) && (seed == 0 || engine() % 2 == 0)) {
-      figure.spread.reset();
+      parameter.spread.reset();
     }
   }
   return motor;
@@ -74,15 +74,15 @@ TEST(DerateWithoutSpreads, AllowsNoMoreThanTheHonestFile) {
 
 TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
   motor::Motor exact = ecx_32();
-  for (auto& [key, figure] : exact.parameters) {
+  for (auto& [key, parameter] : exact.parameters) {
     if (motor::needs_spread(key)) {
-      figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value, figure.value, true};
+      parameter.spread = base::Spread{base::Spread::Kind::tolerance, parameter.value, parameter.value, true};
     }
   }
   motor::Motor missing = ecx_32();
-  for (auto& [key, figure] : missing.parameters) {
+  for (auto& [key, parameter] : missing.parameters) {
     if (motor::needs_spread(key)) {
-      figure.spread.reset();
+      parameter.spread.reset();
     }
   }
   const Derating one = derate(exact, twente(), few_samples());
@@ -94,9 +94,9 @@ TEST(DerateWithoutSpreads, TakesAZeroToleranceForAMissingOne) {
 TEST(DerateWithoutSpreads, TakesATinyToleranceForAMissingOne) {
   motor::Motor tiny = ecx_32();
   motor::Motor missing = ecx_32();
-  for (auto& [key, figure] : tiny.parameters) {
+  for (auto& [key, parameter] : tiny.parameters) {
     if (motor::needs_spread(key)) {
-      figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value * (1.0 - 1e-5), figure.value * (1.0 + 1e-5), true};
+      parameter.spread = base::Spread{base::Spread::Kind::tolerance, parameter.value * (1.0 - 1e-5), parameter.value * (1.0 + 1e-5), true};
       missing.parameters.at(key).spread.reset();
     }
   }

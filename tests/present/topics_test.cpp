@@ -98,5 +98,24 @@ TEST(List, AFolderWithoutFilesIsAnError) {
   EXPECT_THROW(static_cast<void>(list_document("topics", some)), base::Failure);
 }
 
+TEST(Topics, TheQuietFormOfTheVerdictsNamesThemAll) {
+  RenderOptions options;
+  options.is_quiet = true;
+  const std::string quiet = terminal_text(description_of("verdict", kShippedFolders), options);
+  for (const char* verdict : {"pass", "marginal", "fail", "infeasible", "Undecided"}) {
+    EXPECT_THAT(quiet, HasSubstr(verdict));
+  }
+}
+
+TEST(Topics, EachVerdictIsDescribedAndLeadsToTheOthers) {
+  for (const char* verdict : {"pass", "marginal", "fail", "infeasible", "undecided"}) {
+    const Document document = description_of(verdict, kShippedFolders);
+    EXPECT_EQ(document.data.at("id"), verdict);
+    EXPECT_FALSE(document.paragraphs.front().empty());
+    ASSERT_EQ(document.notes.size(), 1U);
+    EXPECT_THAT(document.notes.front().words, HasSubstr("describe verdict"));
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak::present

@@ -48,11 +48,11 @@ const derate::ExporterType& exporter_of(const DerateOptions& options) {
   if (!options.to.empty() || ending.empty()) {
     return exporter_named(options.to.empty() ? "c_header" : options.to);
   }
+  if (const derate::ExporterType* const selected = derate::exporter_of_ending(ending)) {
+    return *selected;
+  }
   std::string expected;
   for (const derate::ExporterType& each : derate::all_exporters()) {
-    if (each.file_ending == ending) {
-      return each;
-    }
     expected += each.file_ending.empty() ? "" : fmt::format("{}{}", expected.empty() ? "" : ", ", each.file_ending);
   }
   throw base::Failure(base::ExitCode::bad_input,
@@ -94,7 +94,7 @@ base::ExitCode run(const DerateOptions& options, Session& session) {
   if (!options.out.empty()) {
     session.write(options.out, answer.text);
   }
-  session.show(present::derating_document(job, answer));
+  session.show(present::derating_document(job, answer, options.out));
   return answer.holds() ? base::ExitCode::done : base::ExitCode::limit_exceeded;
 }
 

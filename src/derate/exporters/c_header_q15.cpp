@@ -470,6 +470,7 @@ std::string write_c_header_q15(const Derating& derating) {
 ExporterType c_header_q15() {
   return {.name = {},
           .summary = "C99 header in integers (16-bit table, 32-bit observer) for controllers without an FPU",
+          .usual_ending = ".h",
           .write = write_c_header_q15};
 }
 

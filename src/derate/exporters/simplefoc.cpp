@@ -60,8 +60,10 @@ std::string write_simplefoc(const Derating& derating) {
 }  // namespace
 
 ExporterType simplefoc() {
-  return {
-      .name = {}, .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor", .write = write_simplefoc};
+  return {.name = {},
+          .summary = "Arduino code that limits a SimpleFOC motor with the C header of the same motor",
+          .usual_ending = ".h",
+          .write = write_simplefoc};
 }
 
 }  // namespace heatsoak::derate::exporters

@@ -95,9 +95,9 @@ std::vector<thermal::Network> drawn(const Subject& subject, std::uint64_t first_
 thermal::Network at_the_ends(const Subject& subject, std::uint64_t corner) {
   motor::Motor motor = subject.motor;
   unsigned bit = 0;
-  for (auto& [key, figure] : motor.parameters) {
-    if (motor::needs_spread(key) && figure.spread) {
-      figure.value = ((corner >> bit++) & 1U) != 0 ? figure.spread->high : figure.spread->low;
+  for (auto& [key, parameter] : motor.parameters) {
+    if (motor::needs_spread(key) && parameter.spread) {
+      parameter.value = ((corner >> bit++) & 1U) != 0 ? parameter.spread->high : parameter.spread->low;
     }
   }
   motor::refresh_values(motor);
