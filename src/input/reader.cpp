@@ -270,7 +270,16 @@ void Reader::read_spread(const base::ParameterSpec& spec, base::ParameterValue& 
                  Need::required);
     if (share) {
       const double half = is_temperature ? *share : *share * std::abs(parameter.value);
-      parameter.spread = {base::Spread::Kind::tolerance, parameter.value - half, parameter.value + half, !is_temperature};
+      const base::Spread spread{base::Spread::Kind::tolerance, parameter.value - half, parameter.value + half, !is_temperature};
+      // A value that is missing or outside has its own problem.
+      if (spec.range.contains(parameter.value) && !(spec.range.contains(spread.low) && spec.range.contains(spread.high))) {
+        problem(
+            "tolerance",
+            fmt::format("reaches {}, beyond the possible range; expected {}; give a smaller tolerance, or a range in place of it",
+                        base::to_string(base::Range::between(spread.low, spread.high), spec.unit), base::to_string(spec.range, spec.unit)));
+        return;
+      }
+      parameter.spread = spread;
     }
     return;
   }

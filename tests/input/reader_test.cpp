@@ -118,6 +118,22 @@ TEST_F(ReaderTest, a_tolerance_is_a_share_and_of_a_temperature_a_difference) {
   EXPECT_EQ(temperature.source, "s, t");
 }
 
+constexpr base::ParameterSpec kShare{"share", "", base::Range::between(0.0, 1.0), "a share"};
+
+TEST_F(ReaderTest, a_tolerance_stays_within_the_possible_range) {
+  read("share = { value = \"0.9\", origin = \"measured\", source = \"s\", tolerance = \"20 %\" }").parameter(kShare, Need::required);
+  EXPECT_THAT(places(), ElementsAre("1:69 share.tolerance"));
+  EXPECT_EQ(message(),
+            "reaches 0.72 to 1.08, beyond the possible range; expected 0 to 1; give a smaller tolerance, or a range in place of it");
+}
+
+TEST_F(ReaderTest, a_tolerance_may_reach_the_end_of_the_possible_range) {
+  const base::ParameterValue share = parameter_of(
+      read("share = { value = \"0.8\", origin = \"measured\", source = \"s\", tolerance = \"25 %\" }").parameter(kShare, Need::required));
+  ASSERT_TRUE(diagnostics_.empty()) << message();
+  EXPECT_DOUBLE_EQ(share.spread->high, 1.0);
+}
+
 TEST_F(ReaderTest, a_range_has_units_of_its_own) {
   const base::ParameterValue parameter = parameter_of(
       read("resistance = { value = \"2 ohm\", origin = \"measured\", source = \"s\", range = [\"1900 mohm\", \"0.0025 kohm\"] }")
