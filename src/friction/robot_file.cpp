@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "base/confidence.h"
 #include "input/toml_text.h"
 
 namespace heatsoak::friction {
@@ -153,7 +154,8 @@ Estimate converted(const Estimate& estimate, const Convert& convert) {
 
 std::string volts(const Estimate& estimate) {
   const auto& interval = estimate.interval;
-  return interval ? fmt::format("{:.3f} V, 95 % in {:.3f} to {:.3f} V", estimate.value, interval->low, interval->high)
+  return interval ? fmt::format("{:.3f} V, {} in {:.3f} to {:.3f} V", estimate.value, base::level_text(base::kInterval_share),
+                                interval->low, interval->high)
                   : fmt::format("{:.3f} V", estimate.value);
 }
 

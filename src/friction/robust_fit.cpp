@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/confidence.h"
+
 namespace heatsoak::friction {
 namespace {
 
@@ -160,7 +162,7 @@ RobustLocation robust_location(std::span<const double> values, double step) {
 }
 
 double RobustFit::quantile_factor(Eigen::Index coefficient) const {
-  return boost::math::quantile(boost::math::students_t(std::max(1.0, freedom_counts(coefficient))), 0.975);
+  return boost::math::quantile(boost::math::students_t(std::max(1.0, freedom_counts(coefficient))), base::kBoundConfidence_share);
 }
 
 Estimate RobustFit::estimate(Eigen::Index coefficient) const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/confidence.h"
 #include "base/random.h"
 
 namespace heatsoak::friction {
@@ -283,7 +284,8 @@ std::optional<Estimate> over_runs(const std::vector<double>& values) {
   if (values.size() >= 3) {
     const double typical = robust_location(values, 0.0).value.value();
     const double deviation = std::sqrt((all.array() - typical).square().sum() / (count - 1.0));
-    const double half = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975) * deviation / std::sqrt(count);
+    const double half =
+        boost::math::quantile(boost::math::students_t(count - 1.0), base::kBoundConfidence_share) * deviation / std::sqrt(count);
     return estimate_around(typical, half);
   }
   return Estimate{.value = all.mean()};
@@ -335,8 +337,8 @@ RollOutResult roll_out(const std::vector<FrictionLog>& logs, const robot::Robot&
         };
         const double value = estimate->value;
         Interval& interval = *estimate->interval;
-        interval.low = value - std::hypot(value - interval.low, std::max(0.0, value - quantile(0.025)));
-        interval.high = value + std::hypot(interval.high - value, std::max(0.0, quantile(0.975) - value));
+        interval.low = value - std::hypot(value - interval.low, std::max(0.0, value - quantile(0.5 * base::kError_share)));
+        interval.high = value + std::hypot(interval.high - value, std::max(0.0, quantile(base::kBoundConfidence_share) - value));
       }
     }
   };

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/confidence.h"
 #include "firmware/core_diagram.h"
 #include "present/description.h"
 #include "present/parameter_table.h"
@@ -69,9 +70,11 @@ Document command_limits_description() {
           "The name of a number is the list of keys to it, joined by \".\"; `heatsoak COMMAND … --json -` shows them. An element "
           "of a list has the value of its first key, or its place from 0. \"*\" is every element or key; the worst number "
           "counts.",
-          "The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number with a 95 % "
-          "interval beside it, the worse end is compared. A list limits both sides. A number that is missing or null fails its limit. "
-          "Exception: a null whose key is in the list \"never\" beside it is a time that never comes, longer than every limit.",
+          fmt::format("The unit is that in which the name ends, or of the \"unit\" beside the number, or of the key around it. Of a number "
+                      "with a {} interval beside it, the worse end is compared. A list limits both sides. A number that is missing or "
+                      "null fails its limit. Exception: a null whose key is in the list \"never\" beside it is a time that never "
+                      "comes, longer than every limit.",
+                      base::level_text(base::kInterval_share)),
           "The command runs in the folder of the check file and writes no file. Mistakes in its options, ids and files are reported with "
           "those of the check file, before anything is computed. The key \"ranges\" of an answer gives the lowest and highest possible "
           "value of numbers by their names; --update writes no limit that cannot fail."}};

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/confidence.h"
 #include "base/counted.h"
 #include "present/changes.h"
 #include "present/closed_loop.h"
@@ -18,7 +19,7 @@
 namespace heatsoak::present {
 namespace {
 
-/// With fewer samples the ends of a 90 % range are random; it may even exclude the nominal value.
+/// With fewer samples the ends of the range between the percentiles are random; it may even exclude the nominal value.
 constexpr int kFewestForRange = 20;
 
 std::string peak_text(const select::MotorEvaluation& motor) {
@@ -56,26 +57,28 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
   const auto nominal = [is_drawn](std::string_view what) {
     return fmt::format("{}{}", what, is_drawn ? " in the game of the seed" : " with nominal values");
   };
-  return {{"", "", 0, kRight, kLeastForLimit},
-          {.name = "motor", .alignment = kLeft, .may_shorten = true},
-          is_sampled ? Column{"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"}
-                     : Column{"nominal", "", 0, kLeft, 0, false, "within or over a temperature limit, or short of the demand; no verdict"},
-          {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
-          {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
-          {"margin", "K", 0, kRight, kLeastForLimit, false,
-           is_drawn ? "to the nearer limit, from the 95th percentile of the samples" : nominal("to the nearer limit")},
-          {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
-          {"over limit", "%", 2, kRight, 0, false, "share of the samples that exceed a temperature limit"},
-          {"exceeded after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
-          {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
-          {"current", "A rms", 5, kRight, 0, false, nominal("heating current")},
-          {"reserve", "A rms", 6, kRight, 0, false, "additional current at the same speeds until a limit is reached"},
-          {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
-          {"stator limit", "°C", 8},
-          {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
-          {"over limit, interval", "%", 10, kRight, 0, false,
-           "share over a limit that infinitely many samples would have, with a confidence of 95 % over all repeated tests"},
-          {"p95, interval", "°C", 11, kRight, 0, false, "range of the 95th percentile of the peak, if other samples were drawn"}};
+  const std::string level = base::level_text(base::kInterval_share);
+  return {
+      {"", "", 0, kRight, kLeastForLimit},
+      {.name = "motor", .alignment = kLeft, .may_shorten = true},
+      is_sampled ? Column{"verdict", "", 0, kLeft, 0, false, "see `heatsoak describe verdict`"}
+                 : Column{"nominal", "", 0, kLeft, 0, false, "within or over a temperature limit, or short of the demand; no verdict"},
+      {"peak", "°C", 0, kRight, 0, false, nominal("winding") + " [5th…95th percentile of the samples]"},
+      {"limit", "°C", 0, kRight, kLeastForLimit, false, "of the winding"},
+      {"margin", "K", 0, kRight, kLeastForLimit, false,
+       is_drawn ? "to the nearer limit, from the 95th percentile of the samples" : nominal("to the nearer limit")},
+      {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
+      {"over limit", "%", 2, kRight, 0, false, "share of the samples that exceed a temperature limit"},
+      {"exceeded after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
+      {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
+      {"current", "A rms", 5, kRight, 0, false, nominal("heating current")},
+      {"reserve", "A rms", 6, kRight, 0, false, "additional current at the same speeds until a limit is reached"},
+      {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
+      {"stator limit", "°C", 8},
+      {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
+      {"over limit, interval", "%", 10, kRight, 0, false,
+       fmt::format("share over a limit that infinitely many samples would have, with a confidence of {} over all repeated tests", level)},
+      {"p95, interval", "°C", 11, kRight, 0, false, "range of the 95th percentile of the peak, if other samples were drawn, " + level}};
 }
 
 std::string p95_text(const select::MotorEvaluation& motor) {
@@ -115,7 +118,8 @@ std::string peak_words(const select::MotorEvaluation& motor) {
   const double limit_C = is_stator ? motor.stator_limit_C.value_or(motor.winding_limit_C) : motor.winding_limit_C;
   const std::string_view node = is_stator ? "stator" : "winding";
   if (motor.games > 0 && motor.samples >= kFewestForRange && peak_C.p95) {
-    return fmt::format("the {} reaches at most {:.0f} °C in 95 % of the samples (limit {:.0f} °C)", node, *peak_C.p95, limit_C);
+    return fmt::format("the {} reaches at most {:.0f} °C in {} of the samples (limit {:.0f} °C)", node, *peak_C.p95,
+                       base::level_text(base::kHighPercentile_share), limit_C);
   }
   const std::string when = motor.verdict == select::Verdict::fail && motor.time_to_limit_s
                                ? fmt::format(", exceeded after {}", duration_text(*motor.time_to_limit_s))
@@ -205,8 +209,8 @@ std::string sampling_error(std::span<const select::MotorEvaluation> results) {
     p95_K = std::max(p95_K, 0.5 * (each.winding_p95_interval_C->high - each.winding_p95_interval_C->low));
   }
   return fmt::format(
-      "Sampling error (95 %): ±{:.0f} percentage points for the share of samples over a limit; {} for the 95th percentile of the peak.",
-      std::ceil(100.0 * probability_ratio),
+      "Sampling error ({}): ±{:.0f} percentage points for the share of samples over a limit; {} for the 95th percentile of the peak.",
+      base::level_text(base::kInterval_share), std::ceil(100.0 * probability_ratio),
       std::isfinite(p95_K) ? fmt::format("±{:.0f} K", std::ceil(p95_K)) : "unknown (more samples needed)");
 }
 

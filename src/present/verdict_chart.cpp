@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/confidence.h"
 #include "base/counted.h"
 #include "present/evaluation.h"
 #include "present/verdict_words.h"
@@ -128,16 +129,18 @@ report::Chart verdict_chart(const std::vector<select::MotorEvaluation>& results,
   const bool estimated = std::ranges::any_of(shown, [](const select::MotorEvaluation* each) { return each->data_quality == "estimated"; });
   // A load that the robot's motion demands, such as a match, does not repeat in cycles.
   const bool has_cycles = !duty.shape_data->depends_on_robot();
-  constexpr std::string_view kAreas = "pale areas: 5\u00a0% to 95\u00a0% of the samples at each time; ";
+  const std::string percentiles =
+      fmt::format("{:.3g}\u00a0% to {:.3g}\u00a0%", 100.0 * base::kLowPercentile_share, 100.0 * base::kHighPercentile_share);
+  const std::string areas = has_bands(shown.size()) ? fmt::format("pale areas: {} of the samples at each time; ", percentiles) : "";
   const std::string_view of_cycles = has_cycles ? ", highest and lowest of each load cycle" : "";
-  return {.title = title_of(results, robot, duty),
-          .subtitle = fmt::format("{}{}{}{}", shown.size() < results.size() ? selection_of(shown, results.size(), robot) : "", duty.summary,
-                                  sampled ? fmt::format("; lines: nominal{}; {}bars: 5\u00a0% to 95\u00a0% of the samples' peaks",
-                                                        of_cycles, has_bands(shown.size()) ? kAreas : std::string_view())
-                                          : fmt::format("; nominal values{}", of_cycles),
-                                  estimated ? "; thermal data partly estimated" : ""),
-          .x_label = "time / min",
-          .panels = {panel(shown, true, has_cycles), panel(shown, false, has_cycles)}};
+  return {
+      .title = title_of(results, robot, duty),
+      .subtitle = fmt::format("{}{}{}{}", shown.size() < results.size() ? selection_of(shown, results.size(), robot) : "", duty.summary,
+                              sampled ? fmt::format("; lines: nominal{}; {}bars: {} of the samples' peaks", of_cycles, areas, percentiles)
+                                      : fmt::format("; nominal values{}", of_cycles),
+                              estimated ? "; thermal data partly estimated" : ""),
+      .x_label = "time / min",
+      .panels = {panel(shown, true, has_cycles), panel(shown, false, has_cycles)}};
 }
 
 }  // namespace heatsoak::present

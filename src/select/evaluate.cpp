@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/confidence.h"
 #include "base/diagnostic.h"
 #include "motor/datasheet_network.h"
 #include "motor/default_spread.h"
@@ -343,10 +344,10 @@ std::vector<double> percentile(const std::vector<float>& by_cell, int samples, d
 
 void finish_band(Work& work, int samples) {
   TemperatureCurves& curves = work.result.curves;
-  curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, 0.05);
-  curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, 0.95);
-  curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, 0.05);
-  curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, 0.95);
+  curves.winding_p05_C = percentile(work.winding_envelope_C.low_C, samples, base::kLowPercentile_share);
+  curves.winding_p95_C = percentile(work.winding_envelope_C.high_C, samples, base::kHighPercentile_share);
+  curves.stator_p05_C = percentile(work.stator_envelope_C.low_C, samples, base::kLowPercentile_share);
+  curves.stator_p95_C = percentile(work.stator_envelope_C.high_C, samples, base::kHighPercentile_share);
   for (std::size_t cell = 0; cell < curves.winding_p05_C.size(); ++cell) {
     curves.band_time_s.push_back(work.duration_s * (static_cast<double>(cell) + 0.5) / static_cast<double>(kBandCells));
   }

@@ -14,7 +14,7 @@ namespace heatsoak::select {
 namespace {
 
 constexpr double kTail_share = 0.5 * kError_share;
-constexpr double kPercentile_share = 0.95;
+using base::kHighPercentile_share;
 constexpr std::size_t kFewestDraws = 20;
 constexpr double kNotKnown = std::numeric_limits<double>::infinity();
 
@@ -38,19 +38,19 @@ Spread95 spread(double nominal_C, std::vector<double> samples_C) {
     return {.nominal = nominal_C};
   }
   std::ranges::sort(samples_C);
-  return {nominal_C, quantile(samples_C, 0.05), quantile(samples_C, 0.5), quantile(samples_C, 0.95)};
+  return {nominal_C, quantile(samples_C, base::kLowPercentile_share), quantile(samples_C, 0.5), quantile(samples_C, kHighPercentile_share)};
 }
 
 int fewest_samples_for_bound(bool is_drawn) {
   return is_drawn ? static_cast<int>(kFewestDraws) * base::kLanes
-                  : static_cast<int>(std::ceil(std::log(kTail_share) / std::log(kPercentile_share)));
+                  : static_cast<int>(std::ceil(std::log(kTail_share) / std::log(kHighPercentile_share)));
 }
 
 DrawIntervals sample_intervals(std::span<const double> samples_C, std::span<const char> is_over, double error_share) {
   const auto count = static_cast<double>(samples_C.size());
   std::vector<double> sorted_C(samples_C.begin(), samples_C.end());
   std::ranges::sort(sorted_C);
-  const boost::math::binomial_distribution<> below(count, kPercentile_share);
+  const boost::math::binomial_distribution<> below(count, kHighPercentile_share);
   const auto at = [&](double place) {
     if (place > count - 1.0) {
       return kNotKnown;
@@ -79,11 +79,11 @@ DrawIntervals draw_intervals(std::span<const double> samples_C, std::span<const 
       }
     }
     if (!drawn_C.empty()) {
-      const auto place = drawn_C.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(drawn_C.size() - 1));
+      const auto place = drawn_C.begin() + static_cast<std::ptrdiff_t>(kHighPercentile_share * static_cast<double>(drawn_C.size() - 1));
       std::nth_element(drawn_C.begin(), place, drawn_C.end());
       // After nth_element the next order statistic is the smallest of the elements behind `place`.
       const double above_C = place + 1 == drawn_C.end() ? *place : *std::min_element(place + 1, drawn_C.end());
-      const double exact = 0.95 * static_cast<double>(drawn_C.size() - 1);
+      const double exact = kHighPercentile_share * static_cast<double>(drawn_C.size() - 1);
       p95_C.push_back(std::lerp(*place, above_C, exact - std::floor(exact)));
     }
   }

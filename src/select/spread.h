@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/confidence.h"
 #include "select/evaluate.h"
 
 namespace heatsoak::select {
@@ -21,12 +22,10 @@ struct SharedDraws {
   std::size_t block_size = 1;
   std::uint64_t seed = 1;
 };
-/// Probability that a 95 % interval does not contain the true value, half of it on each side.
-inline constexpr double kError_share = 0.05;
-/// One-sided confidence of each end of such an interval.
-inline constexpr double kBoundConfidence_share = 1.0 - 0.5 * kError_share;
-/// Confidence intervals of the 95th percentile (level 1 − kError_share) and of the probability (level 1 − `error_share`). The upper end of the
-/// percentile is infinite if there are fewer than fewest_samples_for_bound().
+using base::kBoundConfidence_share;
+using base::kError_share;
+/// Confidence intervals of the 95th percentile (level 1 − kError_share) and of the probability (level 1 − `error_share`). The upper end of
+/// the percentile is infinite if there are fewer than fewest_samples_for_bound().
 struct DrawIntervals {
   Interval95 p95;
   Interval95 probability;

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "base/confidence.h"
 #include "base/parallel.h"
+#include "calibration/forecast/band.h"
 #include "study.h"
 
 namespace heatsoak::calibration::study {
@@ -19,6 +22,8 @@ std::vector<CaseResult> cases(const Case& like, std::size_t count) {
   });
   return results;
 }
+
+TEST(ForecastBand, HasThePrintedLevel) { EXPECT_NEAR(std::erf(kBand_sd / std::numbers::sqrt2), base::kBand_share, 1e-4); }
 
 class Intervals : public testing::TestWithParam<double> {};
 

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "base/confidence.h"
 #include "calibration/forecast/forecast_setup.h"
 
 namespace heatsoak::calibration {
@@ -213,13 +214,13 @@ motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimat
     if (sizes.empty()) {
       continue;
     }
-    const auto at_90 = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size()));
-    std::nth_element(sizes.begin(), at_90, sizes.end());
-    ratio += *at_90 / kBand_sd / static_cast<double>(pieces.size());
+    const auto at_band = sizes.begin() + static_cast<std::ptrdiff_t>(base::kBand_share * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), at_band, sizes.end());
+    ratio += *at_band / kBand_sd / static_cast<double>(pieces.size());
   }
   // With few errors the spread of the next run's error is uncertain.
   const boost::math::students_t student(dependent_pieces ? static_cast<double>(*dependent_pieces) : independent_errors(all, at));
-  band.width_ratio = ratio * boost::math::quantile(student, 0.95) / kBand_sd;
+  band.width_ratio = ratio * boost::math::quantile(student, 0.5 * (1.0 + base::kBand_share)) / kBand_sd;
   return band;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
@@ -25,7 +26,7 @@ Table fitted_parameters(const calibration::Calibration& result) {
   Table table{.columns = {{"value", "", 0, Alignment::left},
                           {"file", "", 2},
                           {"fit", "", 0},
-                          {"95 % interval", "", 0},
+                          {base::level_text(base::kInterval_share) + " interval", "", 0},
                           {"unit", "", 1, Alignment::left},
                           {"identifiable", "", 0, Alignment::left}},
               .rows = {}};

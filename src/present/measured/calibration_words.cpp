@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "estimation/log_rows.h"
 #include "present/measured/log_words.h"
@@ -125,10 +126,10 @@ std::string say(const calibration::TooFewPieces& of) {
                                 ? fmt::format("run{}", of.pieces == 1 ? "" : "s")
                                 : fmt::format("part{} of {}", of.pieces == 1 ? "" : "s", of.runs == 1 ? "the one run" : "the runs");
   return fmt::format(
-      "the network is not extended and the 90 % band of forecasts is wide, because cross-validation can leave out only {} {} that "
+      "the network is not extended and the {} band of forecasts is wide, because cross-validation can leave out only {} {} that "
       "contain{} "
       "heat, and needs at least {}",
-      of.pieces, parts, of.pieces == 1 ? "s" : "", of.needed);
+      base::level_text(base::kBand_share), of.pieces, parts, of.pieces == 1 ? "s" : "", of.needed);
 }
 
 std::string say(const calibration::CrossValidation& of) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "base/xml_text.h"
 #include "estimation/thresholds.h"
@@ -60,8 +61,8 @@ std::string named(const diagnosis::FoundEffect& effect) {
 }
 
 std::string added_effects(const diagnosis::Diagnosis& diagnosis) {
-  std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", "95 % interval", "heat: mean / peak", "evidence",
-                                      "visibility", "confounded here"},
+  std::string text = "<table>" + row({"effect", "node", "acts", "parameter", "value", base::level_text(base::kInterval_share) + " interval",
+                                      "heat: mean / peak", "evidence", "visibility", "confounded here"},
                                      "th");
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     std::string where = effect.condition.empty() ? "always" : "";

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "attribution/scan_term.h"
+#include "base/confidence.h"
 #include "estimation/interval.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
@@ -93,14 +94,15 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
 DiagnosisPicture unknown_heat(const diagnosis::Diagnosis& diagnosis) {
   report::Chart chart{
       fmt::format("Unknown heat in W: {}", verdict_words(diagnosis)),
-      "heat flux into the node that explains the measured temperatures, before and after the diagnosis; band: 95 % after, given "
-      "the model",
+      fmt::format("heat flux into the node that explains the measured temperatures, before and after the diagnosis; band: {} after, "
+                  "given the model",
+                  base::level_text(base::kInterval_share)),
       "time / min",
       {}};
   for (const auto& [node, rms_W] : diagnosis.flux_rms_after_W) {
     report::ChartPanel panel{"into the " + node, "heat / W", {}, {}, {}};
     report::ChartCurve old{"before", {}, {}, 1, false}, now{"after", {}, {}, 0, false};
-    report::ChartBand band{"95 %", {}, {}, {}, 0};
+    report::ChartBand band{base::level_text(base::kInterval_share), {}, {}, {}, 0};
     std::vector<std::string> names;
     double begin_min = 0.0;
     for (const diagnosis::FluxTrace& trace : diagnosis.flux) {
@@ -139,14 +141,14 @@ std::vector<DiagnosisPicture> diagnosis_pictures(const diagnosis::DiagnosisAnswe
     if (heat.knots.size() < 2) {
       continue;
     }
-    report::Chart chart{
-        fmt::format("Curve found at the {}: {}", heat.node, verdict_words(diagnosis)),
-        fmt::format("linear between seven knots; band: 95 %{}", heat.is_in_model ? "" : "; the extended model does not have it"),
-        heat.signals.front() + (heat.signal_unit.empty() ? "" : " / " + heat.signal_unit),
-        {}};
+    report::Chart chart{fmt::format("Curve found at the {}: {}", heat.node, verdict_words(diagnosis)),
+                        fmt::format("linear between seven knots; band: {}{}", base::level_text(base::kInterval_share),
+                                    heat.is_in_model ? "" : "; the extended model does not have it"),
+                        heat.signals.front() + (heat.signal_unit.empty() ? "" : " / " + heat.signal_unit),
+                        {}};
     const attribution::MultiplierSpec& factor = attribution::spec_of(heat.multiplier);
     report::ChartPanel panel{"", factor.unit.empty() ? "share of the copper loss" : fmt::format("curve / {}", factor.unit), {}, {}, {}};
-    report::ChartBand band{"95 %", heat.knots, {}, {}, 0};
+    report::ChartBand band{base::level_text(base::kInterval_share), heat.knots, {}, {}, 0};
     for (std::size_t i = 0; i < heat.curve.size(); ++i) {
       band.low.push_back(heat.curve[i] - estimation::kInterval_sd * heat.curve_sd[i]);
       band.high.push_back(heat.curve[i] + estimation::kInterval_sd * heat.curve_sd[i]);

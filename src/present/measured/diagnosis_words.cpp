@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/thresholds.h"
@@ -51,8 +52,8 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
   std::string text = fmt::format("Found: {} at the {}{}", effect.id, effect.node, condition_in_words(effect.condition));
   for (const diagnosis::FittedParameter& parameter : effect.parameters) {
     if (parameter.low < parameter.high) {
-      text += fmt::format("; {} {:.3g}{}{} (95 %: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
-                          parameter.unit, parameter.low, parameter.high);
+      text += fmt::format("; {} {:.3g}{}{} ({}: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
+                          parameter.unit, base::level_text(base::kInterval_share), parameter.low, parameter.high);
       break;
     }
     if (parameter.is_at_bound) {
@@ -145,7 +146,9 @@ std::string changed_in_words(const diagnosis::ChangedParameter& parameter) {
       "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be e^{:.0f} times "
       "less probable.",
       parameter.name, parameter.before, parameter.unit, parameter.value, parameter.unit,
-      is_beyond_scale ? fmt::format(" (95 %: {:.3g} to {:.3g})", parameter.low, parameter.high) : std::string(), parameter.gain_nats);
+      is_beyond_scale ? fmt::format(" ({}: {:.3g} to {:.3g})", base::level_text(base::kInterval_share), parameter.low, parameter.high)
+                      : std::string(),
+      parameter.gain_nats);
 }
 
 /// A positive conductance means heat out of the node, a positive source means heat into it.
@@ -249,8 +252,8 @@ std::string band_in_words(const diagnosis::DiagnosisAnswer& answer) {
     widths.push_back(fmt::format("{} K at the {}", base::significant(width_K, 2), signal.substr(0, signal.rfind('_'))));
   }
   return fmt::format(
-      "The 90 % band of forecasts with the new file is ±{} on average over the training runs, from predictions of {} left-out recordings.",
-      fmt::join(widths, " and ±"), answer.band->recordings);
+      "The {} band of forecasts with the new file is ±{} on average over the training runs, from predictions of {} left-out recordings.",
+      base::level_text(base::kBand_share), fmt::join(widths, " and ±"), answer.band->recordings);
 }
 
 std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
@@ -264,7 +267,7 @@ std::string beyond_in_words(const diagnosis::BeyondTraining& beyond) {
 std::string reason_in_words(const attribution::Refusal& refused) {
   switch (refused.reason) {
     case attribution::RefusalReason::improbable:
-      // Rounded down, so that 94.6 % does not read as the required 95 %.
+      // Rounded down, so that a probability just below the required one does not read as enough.
       return fmt::format("its probability is {:.0f} %, but a name requires {:.0f} %", std::floor(100.0 * refused.probability),
                          100.0 * refused.needed_probability);
     case attribution::RefusalReason::one_run_only:

@@ -9,6 +9,7 @@
 #include <optional>
 #include <variant>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "present/measured/friction.h"
 
@@ -240,7 +241,9 @@ report::Chart heading_chart(const std::string& verdict, const friction::SteadyFr
       std::ranges::any_of(fit.wheels, [](const friction::WheelFriction& wheel) { return wheel.is_learned() && wheel.damping_is_given; });
   chart.subtitle =
       fmt::format("Friction over the direction of travel, from {} legs on {} headings{}{}", found.steady.parts.size(), fit.headings,
-                  has_intervals ? "; vertical lines: 95 % intervals of each heading alone, from the scatter of all" : "",
+                  has_intervals ? fmt::format("; vertical lines: {} intervals of each heading alone, from the scatter of all",
+                                              base::level_text(base::kInterval_share))
+                                : "",
                   is_given ? "; all at one speed, so the expected damping is used" : "");
   chart.x_label = "direction of travel in the robot's frame / °";
   for (const bool of_damping : {false, true}) {

@@ -5,6 +5,7 @@
 
 #include <variant>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
@@ -106,8 +107,9 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
                      motor.fit ? fmt::format("The model {} of {}", motor.file.filename().string(), motor.fit->motor) : motor.id,
                      prediction.runs.size(), prediction.runs.size() == 1 ? "" : "s", largest)});
   }
-  document.paragraphs.emplace_back(
-      "Each run is predicted from its first temperatures and its measured inputs. A correct 90 % band contains 90 % of the samples.");
+  document.paragraphs.emplace_back(fmt::format(
+      "Each run is predicted from its first temperatures and its measured inputs. A correct {0} band contains {0} of the samples.",
+      base::level_text(base::kBand_share)));
   document.tables.push_back(std::move(table));
   for (const Note& each : prediction_notes(answer, readings)) {
     document.add_note(each.severity, each.words);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/confidence.h"
 #include "base/quantity.h"
 #include "present/measured/prediction.h"
 
@@ -10,8 +11,9 @@ namespace heatsoak::present {
 report::Chart prediction_chart(const motor::Motor& motor, const calibration::Prediction& prediction) {
   report::Chart chart{
       .title = fmt::format("{}: {}", fitted_motor(motor), largest_error_words(prediction)),
-      .subtitle =
-          "Prediction from the first temperatures and the measured inputs of each run; 90 % of the samples are expected in the band",
+      .subtitle = fmt::format(
+          "Prediction from the first temperatures and the measured inputs of each run; {} of the samples are expected in the band",
+          base::level_text(base::kBand_share)),
       .x_label = "time / min"};
   for (const calibration::PredictedRun& run : prediction.runs) {
     std::vector<double> time_min;
@@ -23,7 +25,8 @@ report::Chart prediction_chart(const motor::Motor& motor, const calibration::Pre
       panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, signal_words(each),
                                 base::significant(each.rmse_K, 2), 100.0 * each.coverage_share);
       panel.y_label = signal_words(each) + " temperature / °C";
-      panel.bands = {{.name = "90 % band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
+      panel.bands = {
+          {.name = base::level_text(base::kBand_share) + " band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
       panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 4, .dots = true},
                       {.name = "predicted", .x = time_min, .y = each.predicted_C, .color_index = 1}};
       chart.panels.push_back(std::move(panel));

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <memory>
 
+#include "base/confidence.h"
 #include "calibration/prediction_job.h"
 #include "cli/command.h"
 #include "cli/measured/logs_option.h"
@@ -37,11 +40,13 @@ base::ExitCode run(const PredictOptions& options, Session& session) {
 }  // namespace
 
 Command predict_command() {
+  static const std::string kSummary = fmt::format(
+      "Predicts the temperatures of measured logs from their first temperatures and measured inputs, with a {} band; reports error and "
+      "coverage",
+      base::level_text(base::kBand_share));
   return {
       .name = {},
-      .summary =
-          "Predicts the temperatures of measured logs from their first temperatures and measured inputs, with a 90 % band; reports error "
-          "and coverage",
+      .summary = kSummary,
       .example = "heatsoak predict --model maxon_ec45_flat_70w_24v reports/soak/match_1.csv reports/soak/bench.csv --plot prediction.svg",
       .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
         const auto options = std::make_shared<PredictOptions>();
