@@ -8,10 +8,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <span>
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "base/unit_names.h"
 #include "motor/datasheet_network.h"
 
 namespace heatsoak::derate {
@@ -70,6 +72,17 @@ std::string identifier(std::string_view id) {
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   }
   return name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "motor_" + name : name;
+}
+
+std::string UniqueNames::add(std::string_view name) {
+  const std::string first = identifier(name);
+  const std::optional<base::UnitOfName> unit = base::unit_of_name(first);
+  const std::string quantity = unit ? std::string(unit->quantity) : first;
+  std::string unique = first;
+  for (int next = 2; !taken_.insert(unique).second; ++next) {
+    unique = fmt::format("{}_{}{}", quantity, next, first.substr(quantity.size()));
+  }
+  return unique;
 }
 
 std::string promised_share_text(const Derating& derating) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "derate/ramp.h"
@@ -40,6 +41,19 @@ std::string law_lines(const Derating& derating, std::string_view comment);
 /// Prefix of the names in generated code: the id with each character other than a letter or digit replaced by "_". Begins with "motor_" if
 /// the id is empty or begins with a digit.
 std::string identifier(std::string_view id);
+
+/// Gives each variable of a generated function a name of its own.
+class UniqueNames {
+ public:
+  /// `reserved`: names that the function uses for something else.
+  explicit UniqueNames(std::set<std::string> reserved = {}) : taken_(std::move(reserved)) {}
+
+  /// Returns the name as an identifier(); if it is taken, with a number before its unit: "knot_weight_2_ratio".
+  std::string add(std::string_view name);
+
+ private:
+  std::set<std::string> taken_;
+};
 
 /// Returns a checksum that differs between guards; `form`: form of the generated guard, "" for the C header.
 unsigned guard_signature(const Derating& derating, std::string_view form);

@@ -34,8 +34,8 @@ thermal::OperatingPoint<S> operating_point(const motor::MotorValues& motor, cons
                                            std::span<const S, observed::kSignalCount> signals) {
   const S& current_A = signals[observed::current];
   const S& speed_rad_per_s = signals[observed::speed];
-  const S shaft_power_W =
-      motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s - motor::drag_torque_Nm(motor) * thermal::magnitude(speed_rad_per_s);
+  const S shaft_power_W = thermal::named("shaft_power_W", motor.torque_constant_Nm_per_A * current_A * speed_rad_per_s -
+                                                              motor::drag_torque_Nm(motor) * thermal::magnitude(speed_rad_per_s));
   thermal::OperatingPoint<S> at = robot::machine_point<S>(motor, robot, current_A, speed_rad_per_s, shaft_power_W);
   for (std::size_t i = 0; i < observed::kSignalCount; ++i) {
     if (const std::optional<std::size_t> row = observed::signals()[i].row) {
@@ -69,11 +69,6 @@ Observer::Observer(const thermal::Network& network, const motor::MotorValues& mo
     : heat_safety_factor_(heat_safety_factor), resistance_rise_per_K_(motor.temperature_coefficient_per_K) {
   const std::array<thermal::Traced, observed::kSignalCount> signals = traced_signals(formula_);
   const thermal::OperatingPoint<thermal::Traced> at = operating_point<thermal::Traced>(motor, robot, signals);
-  at.current_rms_A.name(std::array<std::string, 1>{"heating_current_A"});
-  at.speed_mean_rad_per_s.name(std::array<std::string, 1>{"speed_magnitude_rad_per_s"});
-  at.shaft_power_W.name(std::array<std::string, 1>{"shaft_power_W"});
-  at.input_power_W.name(std::array<std::string, 1>{"input_power_W"});
-  at.modulation_ratio.name(std::array<std::string, 1>{"modulation_ratio"});
   std::vector<thermal::Traced> temperature_C;
   for (int node = 0; node < network.state_count(); ++node) {
     state_names_.emplace_back(network.node_name(node));
@@ -84,16 +79,19 @@ Observer::Observer(const thermal::Network& network, const motor::MotorValues& mo
   network.trace(at, temperature_C, heat);
   formula_.begin_law("node_heat");
   const std::vector<double> values = network.values();
-  const auto add_rates = [&](double heat_ratio, std::vector<int>& steps) {
+  const auto add_rates = [&](double heat_ratio, std::string_view of, std::vector<int>& steps) {
     for (int node = 0; node < network.state_count(); ++node) {
       const thermal::TracedHeat& here = heat[static_cast<std::size_t>(node)];
-      const thermal::Traced rate =
-          (heat_ratio * here.made_W + here.moved_W) / values[static_cast<std::size_t>(network.capacity_index(node))];
-      steps.push_back(rate.step_in(formula_));
+      const std::string name = state_names_[static_cast<std::size_t>(node)] + std::string(of);
+      const thermal::Traced losses_W = thermal::named(name + "_losses_W", here.made_W);
+      const thermal::Traced heat_W =
+          thermal::named(name + "_heat_W", heat_ratio * losses_W + thermal::named(name + "_inflow_W", here.moved_W));
+      const thermal::Traced rate_K_per_s = heat_W / values[static_cast<std::size_t>(network.capacity_index(node))];
+      steps.push_back(thermal::named(name + "_rate_K_per_s", rate_K_per_s).step_in(formula_));
     }
   };
-  add_rates(heat_safety_factor, rate_steps_);
-  add_rates(1.0, nominal_rate_steps_);
+  add_rates(heat_safety_factor, "", rate_steps_);
+  add_rates(1.0, "_nominal", nominal_rate_steps_);
   const std::vector<char> needed = formula_.needed_for(rate_steps_);
   for (std::size_t i = 0; i < needed.size(); ++i) {
     const thermal::Formula::Step& step = formula_.steps()[i];

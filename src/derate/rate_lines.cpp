@@ -4,13 +4,8 @@
 
 #include <algorithm>
 
-#include "derate/export_text.h"
-
 namespace heatsoak::derate {
 namespace {
-
-/// Longest expression, in characters, that is written where it is used; a longer one gets a line of its own.
-constexpr std::size_t kLongestInlined = 80;
 
 char sign_of(thermal::Operation operation) {
   switch (operation) {
@@ -29,41 +24,25 @@ char sign_of(thermal::Operation operation) {
 
 bool is_arithmetic(thermal::Operation operation) { return sign_of(operation) != '\0'; }
 
-/// Returns whether the text of the operation contains its operand twice; the operand must then be a name.
-bool repeats_its_operand(thermal::Operation operation) {
-  return operation == thermal::Operation::magnitude || operation == thermal::Operation::positive_part;
-}
-
 /// Returns whether C writes the operation with operators instead of a function.
-bool is_in_place(thermal::Operation operation) { return is_arithmetic(operation) || repeats_its_operand(operation); }
+bool is_in_place(thermal::Operation operation) {
+  return is_arithmetic(operation) || operation == thermal::Operation::magnitude || operation == thermal::Operation::positive_part;
+}
 
 }  // namespace
 
 RateLines::RateLines(const Observer& observer, std::span<const int> rate_steps, const LineStyle& style)
-    : observer_(observer), style_(style), uses_(observer.formula().steps().size(), 0), names_(observer, rate_steps, style.reserved) {
+    : observer_(observer), style_(style), names_(style.reserved) {
   const thermal::Formula& formula = observer.formula();
   const std::vector<char> needed = formula.needed_for(rate_steps);
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    const thermal::Formula::Step& step = formula.steps()[i];
-    if (needed[i] == 0 || step.operation == thermal::Operation::constant || step.operation == thermal::Operation::input) {
-      continue;
-    }
-    const int times = repeats_its_operand(step.operation) ? 2 : 1;
-    uses_[static_cast<std::size_t>(step.left)] += times;
-    if (step.right) {
-      ++uses_[static_cast<std::size_t>(*step.right)];
-    }
-  }
-  for (std::size_t i = 0; i < needed.size(); ++i) {
-    const thermal::Formula::Step& step = formula.steps()[i];
     if (needed[i] == 0) {
       continue;
     }
     const int place = static_cast<int>(i);
-    Text text = expression(step);
-    if (step.operation != thermal::Operation::constant && step.operation != thermal::Operation::input &&
-        (is_variable(place) || text.text.size() > kLongestInlined) && std::ranges::find(rate_steps, place) == rate_steps.end()) {
-      const std::string name = variable(names_.name_for(place));
+    Text text = expression(formula.steps()[i]);
+    if (!formula.name_of(place).empty() && std::ranges::find(rate_steps, place) == rate_steps.end()) {
+      const std::string name = variable(names_.add(formula.name_of(place)));
       text_ += style_.notation == Notation::lisp ? fmt::format("  (var {} {})\n", name, text.text)
                                                  : fmt::format("  const {} {} = {};\n", style_.number, name, text.text);
       text = {name, false};
@@ -94,12 +73,6 @@ std::string RateLines::input(std::size_t place) const {
   const std::size_t node = place - observed::kSignalCount;
   return style_.notation == Notation::lisp ? variable(fmt::format("{}_C", identifier(observer_.state_names()[node])))
                                            : fmt::format("state_C[{}]", node);
-}
-
-bool RateLines::is_variable(int place) const {
-  const thermal::Formula& formula = observer_.formula();
-  return uses_[static_cast<std::size_t>(place)] > 1 || !formula.name_of(place).empty() ||
-         repeats_its_operand(formula.steps()[static_cast<std::size_t>(place)].operation);
 }
 
 std::string RateLines::operand(int place) const {
@@ -145,7 +118,7 @@ RateLines::Text RateLines::infix(const thermal::Formula::Step& step) {
   if (is_arithmetic(step.operation)) {
     return {fmt::format("{} {} {}", operand(step.left), sign_of(step.operation), operand(*step.right)), true};
   }
-  const std::string& left = written_.at(step.left).text;
+  const std::string left = operand(step.left);
   const std::string zero = style_.literal(0.0);
   return {step.operation == thermal::Operation::magnitude ? fmt::format("({0} < {1}) ? -{0} : {0}", left, zero)
                                                           : fmt::format("({0} > {1}) ? {0} : {1}", left, zero),

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "derate/export_text.h"
 #include "derate/observer.h"
-#include "derate/step_names.h"
 
 namespace heatsoak::derate {
 
@@ -34,7 +34,7 @@ struct LineStyle {
 /// Returns a name in Lisp: "hs-copper-loss-W" for the prefix "hs-" and "copper_loss_W".
 std::string lisp_name(std::string_view prefix, std::string name);
 
-/// One line per quantity with a name of its own, then one per node. Other steps of the formula stand where they are used. In single
+/// One line per quantity that the formula names, then one per node. Other steps of the formula stand where they are used. In single
 /// precision without contraction (FMA) the results are bit-identical to FormulaRun<float>.
 class RateLines {
  public:
@@ -54,7 +54,6 @@ class RateLines {
     bool is_joined = false;  ///< two operands and an operator, which need parentheses inside another expression
   };
 
-  [[nodiscard]] bool is_variable(int place) const;
   Text expression(const thermal::Formula::Step& step);
   Text infix(const thermal::Formula::Step& step);
   [[nodiscard]] std::string input(std::size_t place) const;
@@ -63,9 +62,8 @@ class RateLines {
 
   const Observer& observer_;
   LineStyle style_;
-  std::vector<int> uses_;        ///< number of uses of each step
   std::map<int, Text> written_;  ///< text of each step that was written
-  StepNames names_;
+  UniqueNames names_;
   std::string text_;
   bool calls_square_root_ = false;
   bool calls_thermal_math_ = false;

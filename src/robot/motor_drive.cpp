@@ -69,24 +69,27 @@ double heating_factor(const Robot& robot) {
 
 template <class S>
 S input_power_W(const motor::MotorValues& motor, const S& heating_current_A, const S& shaft_power_W, const S& speed_rad_per_s) {
-  return heating_current_A * heating_current_A * motor.terminal_resistance_ohm + shaft_power_W +
-         motor::drag_torque_Nm(motor) * speed_rad_per_s;
+  const S squared_A2 = thermal::named("heating_current_squared_A2", heating_current_A * heating_current_A);
+  return squared_A2 * motor.terminal_resistance_ohm + shaft_power_W + motor::drag_torque_Nm(motor) * speed_rad_per_s;
 }
 
 template <class S>
 thermal::OperatingPoint<S> machine_point(const motor::MotorValues& motor, const Robot& robot, const S& current_A,
                                          const S& velocity_rad_per_s, const S& shaft_power_W) {
   thermal::OperatingPoint<S> at;
-  at.current_rms_A = thermal::magnitude(current_A) * heating_factor(robot);
-  at.speed_mean_rad_per_s = thermal::magnitude(velocity_rad_per_s);
+  using thermal::named;
+  at.current_rms_A = named("heating_current_A", thermal::magnitude(current_A) * heating_factor(robot));
+  at.speed_mean_rad_per_s = named("speed_magnitude_rad_per_s", thermal::magnitude(velocity_rad_per_s));
   at.speed_rms_rad_per_s = at.speed_mean_rad_per_s;
   at.velocity_rad_per_s = velocity_rad_per_s;
   at.shaft_power_W = shaft_power_W;
-  at.input_power_W = input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s);
+  at.input_power_W = named("input_power_W", input_power_W(motor, at.current_rms_A, shaft_power_W, at.speed_mean_rad_per_s));
   at.bus_V = robot.battery.nominal_V;
   const S terminal_V = current_A * motor.terminal_resistance_ohm + motor.torque_constant_Nm_per_A * velocity_rad_per_s;
-  const S modulation_ratio = thermal::magnitude(terminal_V + current_A * robot.series_resistance_ohm()) / robot.battery.nominal_V;
-  at.modulation_ratio = modulation_ratio - thermal::positive_part(modulation_ratio - 1.0);
+  const S driver_V = named("driver_voltage_V", terminal_V + current_A * robot.series_resistance_ohm());
+  const S needed = named("needed_voltage_ratio", thermal::magnitude(driver_V) / robot.battery.nominal_V);
+  const S missing = named("missing_voltage_ratio", thermal::positive_part(named("needed_voltage_minus_one_ratio", needed - 1.0)));
+  at.modulation_ratio = named("modulation_ratio", needed - missing);
   return at;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/copper.h"
 #include "thermal/operating_point.h"
+#include "thermal/scalar.h"
 
 namespace heatsoak::thermal {
 
@@ -28,7 +29,8 @@ class DriveStage {
   /// Returns I²·R25·(1 + α·(T − 25 °C)) in W.
   template <class S>
   static S copper_loss_W(const S& current_A, const S& resistance_25C_ohm, const S& coefficient_per_K, const S& winding_C) {
-    return current_A * current_A * (resistance_25C_ohm * base::resistance_ratio(coefficient_per_K, winding_C));
+    const S resistance_ohm = named("winding_resistance_ohm", resistance_25C_ohm * base::resistance_ratio(coefficient_per_K, winding_C));
+    return named("heating_current_squared_A2", current_A * current_A) * resistance_ohm;
   }
   template <class S>
   [[nodiscard]] S copper_loss_W(const S& current_A, const S* parameters, const S* temperature_C) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 namespace heatsoak::thermal {
 
@@ -23,6 +24,20 @@ inline double exponential(double x) { return std::exp(x); }
 inline double soft_step(double x) {
   const double decay = std::exp(-std::abs(x));
   return (x < 0.0 ? decay : 1.0) / (1.0 + decay);
+}
+
+/// Returns `quantity`, an intermediate quantity of a law. Generated code has a line of its own for it, under `name`, which ends in the
+/// unit: "air_gap_conductance_W_per_K". Only Traced records the name; for every other type the call has no cost. A law names each step that
+/// it uses more than once, and each operand of magnitude() and positive_part().
+template <class S>
+constexpr const S& named(std::string_view /*name*/, const S& quantity) {
+  return quantity;
+}
+
+/// Returns the difference of two temperatures in K; its name in generated code is "winding_above_stator_K".
+template <class S>
+S difference_K(const S& hot_C, const S& cold_C) {
+  return hot_C - cold_C;
 }
 
 /// Returns the index that a choice parameter holds.

@@ -201,11 +201,18 @@ Traced Traced::joined(Operation operation, const Traced& a, const Traced& b) {
   return {formula, formula.apply(operation, left, b.step_in(formula))};
 }
 
-void Traced::name(std::span<const std::string> candidates) const {
+void Traced::name(std::string_view name, std::string_view otherwise) const {
   if (!is_constant()) {
-    const auto unused = std::ranges::find_if(candidates, [&](const std::string& each) { return !formula_->has_name(each); });
-    formula_->name(step_, unused == candidates.end() ? candidates.back() : *unused);
+    formula_->name(step_, std::string(formula_->has_name(name) ? otherwise : name));
   }
+}
+
+std::string Traced::input_without_unit() const {
+  if (is_constant() || formula_->steps()[static_cast<std::size_t>(step_)].operation != Operation::input) {
+    return {};
+  }
+  const std::string& name = formula_->inputs()[static_cast<std::size_t>(formula_->steps()[static_cast<std::size_t>(step_)].left)];
+  return name.substr(0, name.rfind('_'));
 }
 
 std::optional<Traced> Traced::negated() const {
@@ -261,6 +268,13 @@ Traced applied(Operation operation, const Traced& x) {
 }
 
 Traced power(const Traced& base, const Traced& exponent) { return Traced::joined(Operation::power, base, exponent); }
+
+Traced difference_K(const Traced& hot_C, const Traced& cold_C) {
+  const std::string hot = hot_C.input_without_unit();
+  const std::string cold = cold_C.input_without_unit();
+  const Traced difference = hot_C - cold_C;
+  return hot.empty() || cold.empty() ? difference : named(hot + "_above_" + cold + "_K", difference);
+}
 
 int chosen(const Traced& parameter) {
   if (!parameter.is_constant()) {

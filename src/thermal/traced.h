@@ -35,7 +35,7 @@ class Formula {
   int input(std::string name);
   int apply(Operation operation, int left, std::optional<int> right = {});
 
-  /// Names the value of a step for generated code. The first name of a step stays; constants and inputs get none.
+  /// Names the value of a step for generated code. The first name of a step stays; constants and inputs get none. Steps may share a name.
   void name(int step, std::string name);
   /// Returns the name of a step; empty if it has none.
   [[nodiscard]] std::string_view name_of(int step) const;
@@ -94,8 +94,10 @@ class Traced {
   /// Returns the index of its step in the formula; a constant is added to it.
   [[nodiscard]] int step_in(Formula& formula) const { return is_constant() ? formula.constant(value_) : step_; }
 
-  /// Formula::name() of its step with the first candidate that no other step has, or else the last; nothing for a constant.
-  void name(std::span<const std::string> candidates) const;
+  /// Returns the name of a temperature that is an input, without its unit; empty for any other number.
+  [[nodiscard]] std::string input_without_unit() const;
+  /// Formula::name() of its step with `name` or, if another step has that name, with `otherwise`; no effect for a constant.
+  void name(std::string_view name, std::string_view otherwise) const;
 
   Traced& operator+=(const Traced& other) { return *this = *this + other; }
   Traced& operator-=(const Traced& other) { return *this = *this - other; }
@@ -134,6 +136,11 @@ inline Traced soft_positive_part(const Traced& x, double width) {
 }
 inline Traced soft_step(const Traced& x) { return 1.0 / (1.0 + exponential(-x)); }
 Traced power(const Traced& base, const Traced& exponent);
+inline const Traced& named(std::string_view name, const Traced& quantity) {
+  quantity.name(name, name);
+  return quantity;
+}
+Traced difference_K(const Traced& hot_C, const Traced& cold_C);
 /// Throws std::logic_error if the choice is not a constant.
 int chosen(const Traced& parameter);
 

@@ -4,10 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
+#include <optional>
 #include <regex>
 #include <string>
+#include <vector>
 
+#include "base/unit_names.h"
+#include "derate/export_text.h"
 #include "exported_text.h"
+#include "thermal/effect.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -51,11 +57,117 @@ TEST(ReadableCode, HasNoLoopThatRunsOnceAndNoNumberedNames) {
 TEST(ReadableCode, IntegerFormNamesQuantitiesByTheirUnits) {
   const std::string code = exported("c_header_q15", derating_of(ecx_32_with("")));
   for (const char* const name :
-       {"no_load_loss_torque_Nm", "heating_current_squared_A2", "copper_loss_resistance_ohm", "winding_to_stator_conductance_W_per_K",
-        "heat_safety_factor_ratio", "guarded_copper_loss_W", "winding_rate_K_per_J", "copper_loss_resistance_change_per_K"}) {
+       {"speed_magnitude_rad_per_s", "no_load_loss_W", "heating_current_squared_A2", "winding_resistance_ohm", "copper_loss_W",
+        "winding_above_stator_K", "winding_to_stator_W", "winding_heat_W", "stator_inflow_W", "winding_rate_K_per_s"}) {
     EXPECT_THAT(code, HasSubstr(fmt::format("const int32_t {} = ", name)));
   }
   EXPECT_THAT(code, HasSubstr("#define MAXON_ECX_FLAT_32L_48V_Q15_UNKNOWN_CURRENT_MA "));
+}
+
+/// Values of an effect in a motor's file: the first variant as a candidate, or else the worked example.
+std::string in_a_file(const thermal::EffectType& type) {
+  const std::vector<double>& values = type.candidacy.variants.empty() ? type.example.parameters : type.candidacy.variants.front();
+  std::string lines = fmt::format("[effects.of_{0}]\ntype = \"{0}\"\n", type.name);
+  for (std::size_t i = 0; i < type.parameters.size(); ++i) {
+    const base::ParameterSpec& spec = type.parameters[i];
+    const std::string_view unit = base::unit_of(type.parameters, i, values);
+    lines += spec.choices.empty()
+                 ? value(std::string(spec.key).c_str(), fmt::format("{}{}{}", values[i], unit.empty() ? "" : " ", unit).c_str())
+                 : fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
+  }
+  return lines + "\n";
+}
+
+/// A derating with the laws of this motor and the table of another one, because only the laws are of interest.
+Derating with_laws_of(const motor::Motor& motor) {
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  Derating derating = ecx_derating();
+  derating.observer = Observer(network, motor.nominal, twente(), 1.5);
+  derating.effects = acting_effects(network, motor);
+  return derating;
+}
+
+/// Names of the variables in the functions that compute the rates.
+std::vector<std::string> variables(const std::string& code, const std::string& function, const std::string& pattern) {
+  std::vector<std::string> names;
+  const std::regex variable(pattern);
+  for (std::size_t at = code.find(function); at != std::string::npos; at = code.find(function, at + 1)) {
+    const std::string body = code.substr(at, code.find("\n}", at) - at);
+    for (std::sregex_iterator each(body.begin(), body.end(), variable), end; each != end; ++each) {
+      names.push_back(std::regex_replace((*each)[1].str(), std::regex("-"), "_"));
+    }
+  }
+  return names;
+}
+
+struct Language {
+  const char* exporter;
+  const char* function;
+  const char* variable;
+};
+constexpr Language kLanguages[] = {{"c_header", "rates(const ", R"(\n  const float (\w+) =)"},
+                                   {"c_header_q15", "_changes(const ", R"(\n  const int32_t (\w+) =)"},
+                                   {"vesc", "(defun hs-step ", R"(\n  \(var hs-([\w-]+) )"}};
+
+class NamesOfLaw : public testing::TestWithParam<std::size_t> {
+ protected:
+  static const thermal::EffectType& type() { return thermal::all_effects()[GetParam()]; }
+};
+INSTANTIATE_TEST_SUITE_P(Registry, NamesOfLaw, testing::Range(std::size_t{0}, thermal::all_effects().size()),
+                         [](const auto& effect) { return std::string(thermal::all_effects()[effect.param].name); });
+
+// A firmware engineer reads quantities with units, not operands of operations.
+TEST_P(NamesOfLaw, are_quantities_with_units) {
+  const Derating derating = with_laws_of(ecx_32_with(in_a_file(type())));
+  const std::regex operand(
+      fmt::format("^{}_(operand|power)|operand|scaled|operating_point|(^|_)(number|term|constant|part)(_[0-9]+)?$", type().name));
+  for (const Language& language : kLanguages) {
+    if (refusal(language.exporter, derating) != "accepted") {
+      continue;
+    }
+    const std::vector<std::string> names = variables(exported(language.exporter, derating), language.function, language.variable);
+    EXPECT_GT(names.size(), 4U) << language.exporter;
+    for (const std::string& name : names) {
+      const std::optional<base::UnitOfName> unit = base::unit_of_name(name);
+      ASSERT_TRUE(unit) << language.exporter << ": " << name << " ends in no unit";
+      EXPECT_FALSE(std::regex_search(std::string(unit->quantity), operand)) << language.exporter << ": " << name;
+    }
+  }
+}
+
+// Code without names of its own for such steps would compute them twice.
+TEST_P(NamesOfLaw, exist_for_every_step_that_is_used_twice) {
+  using thermal::Operation;
+  const Derating derating = with_laws_of(ecx_32_with(in_a_file(type())));
+  const thermal::Formula& formula = derating.observer.formula();
+  const std::vector<char> needed = formula.needed_for(derating.observer.rate_steps());
+  std::map<int, int> uses;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    const thermal::Formula::Step& step = formula.steps()[i];
+    if (needed[i] == 0 || step.operation == Operation::constant || step.operation == Operation::input) {
+      continue;
+    }
+    uses[step.left] += step.operation == Operation::magnitude || step.operation == Operation::positive_part ? 2 : 1;
+    if (step.right) {
+      ++uses[*step.right];
+    }
+  }
+  for (const auto& [place, count] : uses) {
+    const Operation operation = formula.steps()[static_cast<std::size_t>(place)].operation;
+    if (count > 1 && operation != Operation::constant && operation != Operation::input) {
+      EXPECT_FALSE(formula.name_of(place).empty()) << "step " << place << " of " << formula.law_of(place);
+    }
+  }
+}
+
+TEST(ReadableCode, NumbersNamesThatLawsShare) {
+  UniqueNames names({"state_C"});
+  EXPECT_EQ(names.add("knot_weight_ratio"), "knot_weight_ratio");
+  EXPECT_EQ(names.add("knot_weight_ratio"), "knot_weight_2_ratio");
+  EXPECT_EQ(names.add("knot_weight_ratio"), "knot_weight_3_ratio");
+  EXPECT_EQ(names.add("state_C"), "state_2_C") << "reserved";
+  EXPECT_EQ(names.add("end-winding_rate_K_per_s"), "end_winding_rate_K_per_s");
+  EXPECT_EQ(names.add("end winding_rate_K_per_s"), "end_winding_rate_2_K_per_s");
 }
 
 }  // namespace

@@ -86,6 +86,19 @@ TEST(Formula, NeedsOnlyWhatItsResultsDependOn) {
   EXPECT_TRUE(needed[static_cast<std::size_t>(x.step_in(formula))]);
 }
 
+TEST(Formula, LawsNameTheirQuantities) {
+  Formula formula;
+  const Traced winding_C(formula, formula.input("winding_C"));
+  const Traced stator_C(formula, formula.input("stator_C"));
+  const Traced conductance_W_per_K = named("air_gap_conductance_W_per_K", winding_C * 0.1);
+  EXPECT_EQ(formula.name_of(conductance_W_per_K.step_in(formula)), "air_gap_conductance_W_per_K");
+  EXPECT_EQ(formula.name_of(named("another_W_per_K", conductance_W_per_K).step_in(formula)), "air_gap_conductance_W_per_K");
+  EXPECT_EQ(formula.name_of(difference_K(winding_C, stator_C).step_in(formula)), "winding_above_stator_K");
+  EXPECT_EQ(formula.name_of(difference_K(winding_C * 2.0, stator_C).step_in(formula)), "") << "no temperature of a node";
+  EXPECT_EQ(formula.name_of(named("room_C", winding_C).step_in(formula)), "") << "an input has its name";
+  EXPECT_EQ(named("ratio", Traced(2.0)).value(), 2.0);
+}
+
 // Hand calculation: copper 3² · 0.5 Ω · (1 + 0.004·(75 − 25)) = 5.4 W into the winding; 5 K / 2.5 K/W = 2 W leave it.
 TEST(Formula, NetworkSeparatesGeneratedFromTransferredHeat) {
   Network network;

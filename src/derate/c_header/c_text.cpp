@@ -52,6 +52,14 @@ std::size_t break_of_code(std::string_view line, std::size_t first) {
   return best;
 }
 
+/// Returns where the comment at the end of a line begins; npos if code follows its last comment.
+std::size_t comment_at_end(std::string_view line) {
+  const std::size_t opened = line.rfind("/*");
+  const std::size_t closed = line.rfind("*/");
+  const bool is_inside = closed != std::string_view::npos && closed + 2 < line.size();
+  return opened != std::string_view::npos && (!is_inside || closed < opened) ? opened : std::string_view::npos;
+}
+
 /// Breaks one line. `is_comment`: it begins inside of a comment.
 std::string wrapped_line(std::string_view line, bool is_comment) {
   if (line.size() <= kLongestLine || line.starts_with('#')) {
@@ -59,7 +67,7 @@ std::string wrapped_line(std::string_view line, bool is_comment) {
   }
   constexpr std::size_t kLatestComment = 90;  // a comment behind code is continued in its column if it begins before this one
   const std::size_t indent = line.find_first_not_of(' ');
-  const std::size_t opened = is_comment ? indent : line.find("/*");
+  const std::size_t opened = is_comment ? indent : comment_at_end(line);
   const bool has_stars = is_comment && line.substr(indent).starts_with("* ");
   const bool continues_comment = opened <= kLatestComment;
   // The rest must be shorter than the line, although it gets an indent of its own.

@@ -14,7 +14,6 @@
 #include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "derate/plausible_range.h"
-#include "derate/step_names.h"
 
 namespace heatsoak::derate::integer_form {
 namespace {
@@ -36,7 +35,7 @@ class Writer {
       : derating_(derating),
         prefix_(prefix),
         formula_(derating.observer.formula()),
-        unique_(derating.observer, derating.observer.rate_steps(), {"input", "state_C", "change"}),
+        unique_({"input", "state_C", "change"}),
         values_(formula_.steps().size()) {}
 
   IntegerLines write() {
@@ -49,14 +48,23 @@ class Writer {
       }
     }
     for (const int place : observer.rate_steps()) {
-      lines_.rates.push_back(name(place));
+      lines_.rates.push_back(text(place));
       lines_.rate_K_per_s.push_back(values_[static_cast<std::size_t>(place)]);
     }
     return std::move(lines_);
   }
 
  private:
-  [[nodiscard]] const std::string& name(int place) const { return names_.at(place); }
+  /// Text of a step: its name, or its expression if it has no name.
+  struct Text {
+    std::string text;
+    bool is_joined = false;  ///< needs parentheses beside an operator
+  };
+
+  [[nodiscard]] const std::string& text(int place) const { return written_.at(place).text; }
+  [[nodiscard]] std::string operand(int place) const {
+    return written_.at(place).is_joined ? fmt::format("({})", text(place)) : text(place);
+  }
   [[nodiscard]] const FixedPoint& value(int place) const { return values_[static_cast<std::size_t>(place)]; }
 
   [[nodiscard]] base::Failure refusal(const std::set<std::string>& laws, std::string_view what) const {
@@ -82,13 +90,21 @@ class Writer {
     }
   }
 
-  void set(int place, const FixedPoint& made, const std::string& expression) {
+  /// Writes a line for a quantity with a name. Any other step stands where it is used.
+  void set(int place, const FixedPoint& made, const Text& written) {
     values_[static_cast<std::size_t>(place)] = made;
-    const std::string& name = names_.emplace(place, unique_.name_for(place)).first->second;
-    const std::optional<base::UnitOfName> named = base::unit_of_name(name);
-    const std::string unit = named && !named->unit.empty() ? " " + named->unit : "";
-    const std::string of = made.low == made.high ? fmt::format("{:.6g} in steps of ", made.low) : "";
-    lines_.text += fmt::format("  const int32_t {} = {}; /* {}2^{}{} */\n", name, expression, of, -made.bits, unit);
+    const thermal::Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
+    const std::string_view given =
+        step.operation == thermal::Operation::input ? formula_.inputs()[static_cast<std::size_t>(step.left)] : formula_.name_of(place);
+    if (given.empty()) {
+      written_[place] = written;
+      return;
+    }
+    const std::string name = unique_.add(given);
+    const std::optional<base::UnitOfName> unit = base::unit_of_name(name);
+    lines_.text += fmt::format("  const int32_t {} = {}; /* 2^{}{} */\n", name, written.text, -made.bits,
+                               unit && !unit->unit.empty() ? " " + unit->unit : "");
+    written_[place] = {name, false};
   }
 
   void add_step(int place) {
@@ -118,14 +134,14 @@ class Writer {
   void add_constant(int place, double number) {
     FixedPoint made{.low = number, .high = number, .bits = bits_for(number, number), .most_error = 0.0};
     made.most_error = 0.5 * unit(made.bits);
-    set(place, made, fmt::format("{}", static_cast<std::int64_t>(std::llround(std::ldexp(number, made.bits)))));
+    set(place, made, {constant_text(number, std::llround(std::ldexp(number, made.bits))), number < 0.0});
   }
 
   void add_input(int place, std::size_t input) {
     if (input >= observed::kSignalCount) {
       const double coldest_C = derating_.options.coldest_ambient_C - 1.0;
       return set(place, {.low = coldest_C, .high = double{kMostState_C}, .bits = kStateBits, .most_error = unit(kStateBits)},
-                 fmt::format("state_C[{}]", input - observed::kSignalCount));
+                 {fmt::format("state_C[{}]", input - observed::kSignalCount), false});
     }
     const auto signal = static_cast<observed::Signal>(input);
     const PlausibleRange validated = plausible_range(derating_, signal);
@@ -135,8 +151,9 @@ class Writer {
     const int shift = bits_for(per_thousandth, per_thousandth);
     made.most_error = unit(made.bits) + std::max(std::abs(made.low), std::abs(made.high)) * std::ldexp(1.0, -kNumberBits);
     set(place, made,
-        fmt::format("{}_product(input->{}, {}_ONE_THOUSANDTH, {})", prefix_, integer_name(signal), c_header::in_capitals(prefix_),
-                    power_of_two(shift)));
+        {fmt::format("{}_product(input->{}, {}_ONE_THOUSANDTH, {})", prefix_, integer_name(signal), c_header::in_capitals(prefix_),
+                     power_of_two(shift)),
+         false});
   }
 
   [[nodiscard]] static std::string_view integer_name(observed::Signal signal) {
@@ -145,9 +162,21 @@ class Writer {
 
   [[nodiscard]] static std::string power_of_two(int exponent) { return fmt::format("INT64_C({})", std::int64_t{1} << exponent); }
 
+  [[nodiscard]] static std::string constant_text(double number, std::int64_t stored) {
+    return fmt::format("{} /* {:.6g} */", stored, number);
+  }
+
   [[nodiscard]] std::string shifted(int place, int to_bits) const {
     const int shift = value(place).bits - to_bits;
-    return shift == 0 ? name(place) : fmt::format("{}_product({}, 1, {})", prefix_, name(place), power_of_two(shift));
+    if (shift == 0) {
+      return operand(place);
+    }
+    const thermal::Formula::Step& step = formula_.steps()[static_cast<std::size_t>(place)];
+    const std::int64_t stored = std::llround(std::ldexp(step.value, value(place).bits));
+    if (step.operation == thermal::Operation::constant && stored >= 0 && stored % (std::int64_t{1} << shift) == 0) {
+      return constant_text(step.value, stored >> shift);
+    }
+    return fmt::format("{}_product({}, 1, {})", prefix_, text(place), power_of_two(shift));
   }
 
   void add_sum(int place, const thermal::Formula::Step& step, double sign) {
@@ -160,7 +189,8 @@ class Writer {
     made.bits = std::min({a.bits, b.bits, bits_for(made.low, made.high)});
     made.most_error =
         a.most_error + b.most_error + (a.bits > made.bits ? unit(made.bits) : 0.0) + (b.bits > made.bits ? unit(made.bits) : 0.0);
-    set(place, made, fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(*step.right, made.bits)));
+    set(place, made,
+        {fmt::format("{} {} {}", shifted(step.left, made.bits), sign > 0.0 ? "+" : "-", shifted(*step.right, made.bits)), true});
   }
 
   void add_product(int place, const thermal::Formula::Step& step) {
@@ -176,7 +206,8 @@ class Writer {
     const double most_b = std::max(std::abs(b.low), std::abs(b.high));
     made.most_error = most_a * b.most_error + most_b * a.most_error + a.most_error * b.most_error + unit(made.bits);
     set(place, made,
-        fmt::format("{}_product({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(a.bits + b.bits - made.bits)));
+        {fmt::format("{}_product({}, {}, {})", prefix_, text(step.left), text(*step.right), power_of_two(a.bits + b.bits - made.bits)),
+         false});
   }
 
   void add_quotient(int place, const thermal::Formula::Step& step) {
@@ -195,28 +226,28 @@ class Writer {
       throw refusal(place, "its law divides numbers of too different sizes");
     }
     made.most_error = (a.most_error + most * b.most_error) / least + unit(made.bits);
-    set(place, made, fmt::format("{}_quotient({}, {}, {})", prefix_, name(step.left), name(*step.right), power_of_two(shift)));
+    set(place, made, {fmt::format("{}_quotient({}, {}, {})", prefix_, text(step.left), text(*step.right), power_of_two(shift)), false});
   }
 
   void add_magnitude(int place, const thermal::Formula::Step& step) {
     FixedPoint made = value(step.left);
     made.high = std::max(std::abs(made.low), std::abs(made.high));
     made.low = 0.0;
-    set(place, made, fmt::format("({0} < 0) ? -{0} : {0}", name(step.left)));
+    set(place, made, {fmt::format("({0} < 0) ? -{0} : {0}", operand(step.left)), true});
   }
 
   void add_positive_part(int place, const thermal::Formula::Step& step) {
     FixedPoint made = value(step.left);
     made.high = std::max(made.high, 0.0);
     made.low = std::max(made.low, 0.0);
-    set(place, made, fmt::format("({0} > 0) ? {0} : 0", name(step.left)));
+    set(place, made, {fmt::format("({0} > 0) ? {0} : 0", operand(step.left)), true});
   }
 
   const Derating& derating_;
   const std::string& prefix_;
   const thermal::Formula& formula_;
-  StepNames unique_;
-  std::map<int, std::string> names_;  ///< names of the steps that were written
+  UniqueNames unique_;
+  std::map<int, Text> written_;  ///< text of each step as an operand
   std::vector<FixedPoint> values_;
   IntegerLines lines_;
 };

@@ -25,9 +25,9 @@ struct FixedPoint {
 };
 
 struct IntegerLines {
-  /// One line "  const int32_t copper_loss_W = …; /* 2^-23 W */" per step, with the value of its last bit; a line without a unit is an
-  /// intermediate value in SI units. Inputs are input->…, states state_C[node]; names of helpers begin with the prefix and
-  /// "_".
+  /// One line "  const int32_t copper_loss_W = …; /* 2^-23 W */" per quantity that the formula names, with the value of its last bit. Other
+  /// steps of the formula stand where they are used. Inputs are input->…, states state_C[node]; names of helpers begin with the prefix
+  /// and "_".
   std::string text;
   std::vector<std::string> rates;        ///< per state: expression of its rate
   std::vector<FixedPoint> rate_K_per_s;  ///< per state

@@ -10,8 +10,8 @@ struct AcCopperLoss {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
-    heat.source(winding, x.parameter(share) * x.at.copper_loss_W * speed_ratio * speed_ratio);
+    const S speed = speed_ratio(x.at.speed_rms_rad_per_s);
+    heat.source(winding, x.parameter(share) * x.at.copper_loss_W * speed * speed);
   }
 };
 

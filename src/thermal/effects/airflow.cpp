@@ -9,7 +9,7 @@ struct Airflow {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.flow(hot, cold, x.parameter(conductance) * (x.temperature_C(hot) - x.temperature_C(cold)));
+    heat.flow(hot, cold, x.parameter(conductance) * x.difference_K(hot, cold));
   }
 };
 

@@ -10,8 +10,8 @@ struct ArmatureIronLoss {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
-    heat.source(stator, x.parameter(loss) * (x.at.current_rms_A / kReferenceCurrent_A) * speed_ratio * speed_ratio);
+    const S speed = speed_ratio(x.at.speed_rms_rad_per_s);
+    heat.source(stator, x.parameter(loss) * (x.at.current_rms_A / kReferenceCurrent_A) * speed * speed);
   }
 };
 

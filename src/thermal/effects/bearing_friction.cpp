@@ -10,10 +10,12 @@ struct BearingFriction {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S speed_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
-    const S square_ratio = x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s / (kReferenceSpeed_rad_per_s * kReferenceSpeed_rad_per_s);
-    const S viscous = x.parameter(viscous_share) * exponential(-x.parameter(thinning) * (x.temperature_C(stator) - 25.0));
-    heat.source(stator, x.parameter(loss) * ((1.0 - x.parameter(viscous_share)) * speed_ratio + viscous * square_ratio));
+    const S square_ratio = named("speed_squared_ratio", x.at.speed_rms_rad_per_s * x.at.speed_rms_rad_per_s /
+                                                            (kReferenceSpeed_rad_per_s * kReferenceSpeed_rad_per_s));
+    const S viscous = named("viscous_friction_share",
+                            x.parameter(viscous_share) * exponential(-x.parameter(thinning) * (x.temperature_C(stator) - 25.0)));
+    heat.source(stator,
+                x.parameter(loss) * ((1.0 - x.parameter(viscous_share)) * speed_ratio(x.at.speed_mean_rad_per_s) + viscous * square_ratio));
   }
 };
 

@@ -9,7 +9,8 @@ struct BrakingHeat {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(heated, x.parameter(share) * positive_part(-x.at.shaft_power_W));
+    const S into_shaft_W = named("power_into_shaft_W", -x.at.shaft_power_W);
+    heat.source(heated, x.parameter(share) * named("braking_power_W", positive_part(into_shaft_W)));
   }
 };
 

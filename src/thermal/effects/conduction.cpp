@@ -9,7 +9,7 @@ struct Conduction {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.flow(hot, cold, (x.temperature_C(hot) - x.temperature_C(cold)) / x.parameter(thermal_resistance));
+    heat.flow(hot, cold, x.difference_K(hot, cold) / x.parameter(thermal_resistance));
   }
 };
 

@@ -9,9 +9,9 @@ struct ContactAgeing {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S fresh = exponential(-x.at.age_h / x.parameter(time_constant));
-    const S present = x.parameter(fresh_share) * fresh + (1.0 - x.parameter(fresh_share)) * (1.0 - fresh);
-    heat.flow(hot, cold, x.parameter(conductance) * present * (x.temperature_C(hot) - x.temperature_C(cold)));
+    const S fresh = named("freshness_share", exponential(-x.at.age_h / x.parameter(time_constant)));
+    const S present = named("present_contact_share", x.parameter(fresh_share) * fresh + (1.0 - x.parameter(fresh_share)) * (1.0 - fresh));
+    heat.flow(hot, cold, x.parameter(conductance) * present * x.difference_K(hot, cold));
   }
 };
 

@@ -12,10 +12,10 @@ struct ContactLaw {
     constexpr double kMean_C = 60.0;
     constexpr double kDifference_K = 30.0;
     constexpr double kPer_K = 100.0;
-    const S difference_K = x.temperature_C(hot) - x.temperature_C(cold);
-    const S mean_C = 0.5 * (x.temperature_C(hot) + x.temperature_C(cold));
-    const S ratio = power(x.parameter(mean_ratio), (mean_C - kMean_C) / kPer_K) *
-                    power(x.parameter(difference_ratio), (difference_K - kDifference_K) / kPer_K);
+    const S difference_K = x.difference_K(hot, cold);
+    const S mean_C = named("contact_mean_C", 0.5 * (x.temperature_C(hot) + x.temperature_C(cold)));
+    const S ratio = named("contact_ratio", power(x.parameter(mean_ratio), (mean_C - kMean_C) / kPer_K) *
+                                               power(x.parameter(difference_ratio), (difference_K - kDifference_K) / kPer_K));
     heat.flow(hot, cold, x.parameter(conductance) * ratio * difference_K);
   }
 };

@@ -9,9 +9,9 @@ struct ContactTemperatureDependence {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S mean_C = 0.5 * (x.temperature_C(hot) + x.temperature_C(cold));
-    const S present = soft_step(x.parameter(steepness) * (mean_C - x.parameter(midpoint)));
-    heat.flow(hot, cold, x.parameter(conductance) * present * (x.temperature_C(hot) - x.temperature_C(cold)));
+    const S mean_C = named("contact_mean_C", 0.5 * (x.temperature_C(hot) + x.temperature_C(cold)));
+    const S present = named("warm_contact_share", soft_step(x.parameter(steepness) * (mean_C - x.parameter(midpoint))));
+    heat.flow(hot, cold, x.parameter(conductance) * present * x.difference_K(hot, cold));
   }
 };
 

@@ -10,7 +10,7 @@ struct DriverHeat {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S current_ratio = x.at.current_rms_A / kReferenceCurrent_A;
+    const S current_ratio = named("current_ratio", x.at.current_rms_A / kReferenceCurrent_A);
     const S shape = current_ratio * (1.0 - x.parameter(quadratic_share) + x.parameter(quadratic_share) * current_ratio);
     heat.source(stator, x.parameter(loss) * shape);
   }

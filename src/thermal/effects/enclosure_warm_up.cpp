@@ -11,8 +11,8 @@ struct EnclosureWarmUp {
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S air_W_per_K = x.parameter(conductance);
     heat.source(enclosure, air_W_per_K * x.parameter(heat_ratio) * x.at.copper_loss_W);
-    heat.flow(stator, enclosure, air_W_per_K * (x.temperature_C(stator) - x.temperature_C(enclosure)));
-    heat.flow(enclosure, ambient, air_W_per_K * x.parameter(leak_ratio) * (x.temperature_C(enclosure) - x.temperature_C(ambient)));
+    heat.flow(stator, enclosure, air_W_per_K * x.difference_K(stator, enclosure));
+    heat.flow(enclosure, ambient, air_W_per_K * x.parameter(leak_ratio) * x.difference_K(enclosure, ambient));
   }
 };
 

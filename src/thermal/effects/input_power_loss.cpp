@@ -9,7 +9,8 @@ struct InputPowerLoss {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(heated, x.parameter(share) * positive_part(x.at.input_power_W - x.at.shaft_power_W));
+    const S balance_W = named("input_minus_shaft_power_W", x.at.input_power_W - x.at.shaft_power_W);
+    heat.source(heated, x.parameter(share) * named("lost_power_W", positive_part(balance_W)));
   }
 };
 

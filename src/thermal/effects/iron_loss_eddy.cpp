@@ -10,8 +10,8 @@ struct IronLossEddy {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S speed_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
-    heat.source(stator, x.parameter(loss) * power(speed_ratio, x.parameter(exponent)));
+    const S speed = speed_ratio(x.at.speed_rms_rad_per_s);
+    heat.source(stator, x.parameter(loss) * power(speed, x.parameter(exponent)));
   }
 };
 

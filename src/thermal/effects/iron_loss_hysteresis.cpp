@@ -10,7 +10,7 @@ struct IronLossHysteresis {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(stator, x.parameter(loss) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s));
+    heat.source(stator, x.parameter(loss) * speed_ratio(x.at.speed_mean_rad_per_s));
   }
 };
 

@@ -9,7 +9,7 @@ struct LoadFriction {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    heat.source(stator, x.parameter(share) * magnitude(x.at.shaft_power_W));
+    heat.source(stator, x.parameter(share) * named("shaft_power_magnitude_W", magnitude(x.at.shaft_power_W)));
   }
 };
 

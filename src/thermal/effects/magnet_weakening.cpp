@@ -10,7 +10,8 @@ struct MagnetWeakening {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kWidth_K = 2.0;
-    const S weaker = x.parameter(temperature_coefficient) * soft_positive_part(x.temperature_C(magnet) - 25.0, kWidth_K);
+    const S warmer_K = named("magnet_above_25C_K", x.temperature_C(magnet) - 25.0);
+    const S weaker = named("magnet_weakening_ratio", x.parameter(temperature_coefficient) * soft_positive_part(warmer_K, kWidth_K));
     heat.source(winding, 2.0 * weaker * x.at.copper_loss_W);
   }
 };

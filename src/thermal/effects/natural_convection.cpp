@@ -10,8 +10,10 @@ struct NaturalConvection {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kReference_K = 40.0;
-    const S difference_K = x.temperature_C(hot) - x.temperature_C(cold);
-    const S conductance_W_per_K = x.parameter(conductance) * power(magnitude(difference_K) / kReference_K, x.parameter(exponent));
+    const S difference_K = x.difference_K(hot, cold);
+    const S magnitude_K = named("convection_difference_magnitude_K", magnitude(difference_K));
+    const S conductance_W_per_K = named("natural_convection_conductance_W_per_K",
+                                        x.parameter(conductance) * power(magnitude_K / kReference_K, x.parameter(exponent)));
     heat.flow(hot, cold, conductance_W_per_K * difference_K);
   }
 };

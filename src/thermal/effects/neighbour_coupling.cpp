@@ -10,7 +10,7 @@ struct NeighbourCoupling {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     if (x.at.knows(kNeighbour)) {
-      heat.flow(node, surroundings, x.parameter(conductance) * (x.temperature_C(node) - x.at.neighbour_C));
+      heat.flow(node, surroundings, x.parameter(conductance) * difference_K(x.temperature_C(node), x.at.neighbour_C));
     }
   }
 };

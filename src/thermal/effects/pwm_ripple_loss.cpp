@@ -10,9 +10,10 @@ struct PwmRippleLoss {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S duty = magnitude(x.at.modulation_ratio);
-    const S bus_ratio = x.at.bus_V / kReferenceBus_V;
-    const S loss_W = x.parameter(loss) * 4.0 * duty * positive_part(1.0 - duty) * bus_ratio * bus_ratio;
+    const S duty = named("duty_ratio", magnitude(x.at.modulation_ratio));
+    const S off_duty = named("off_duty_ratio", positive_part(named("one_minus_duty_ratio", 1.0 - duty)));
+    const S bus_ratio = named("bus_voltage_ratio", x.at.bus_V / kReferenceBus_V);
+    const S loss_W = named("ripple_loss_W", x.parameter(loss) * 4.0 * duty * off_duty * bus_ratio * bus_ratio);
     heat.source(winding, (1.0 - x.parameter(stator_share)) * loss_W);
     heat.source(stator, x.parameter(stator_share) * loss_W);
   }

@@ -11,11 +11,13 @@ struct Radiation {
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kStefanBoltzmann_W_per_m2_K4 = 5.670374419e-8;
     constexpr double kZero_C = -273.15;
-    const S hot_K = x.temperature_C(hot) - kZero_C;
-    const S cold_K = x.temperature_C(cold) - kZero_C;
+    const S hot_K = named("radiating_surface_K", x.temperature_C(hot) - kZero_C);
+    const S cold_K = named("irradiated_surface_K", x.temperature_C(cold) - kZero_C);
     // a⁴ − b⁴ in factored form, because the difference of two large powers would lose digits.
     const S sum_K3 = (hot_K + cold_K) * (hot_K * hot_K + cold_K * cold_K);
-    heat.flow(hot, cold, kStefanBoltzmann_W_per_m2_K4 * x.parameter(emissive_area) * sum_K3 * (hot_K - cold_K));
+    const S conductance_W_per_K =
+        named("radiation_conductance_W_per_K", kStefanBoltzmann_W_per_m2_K4 * x.parameter(emissive_area) * sum_K3);
+    heat.flow(hot, cold, conductance_W_per_K * (hot_K - cold_K));
   }
 };
 

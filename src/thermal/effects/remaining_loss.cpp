@@ -9,7 +9,9 @@ struct RemainingLoss {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S remaining_W = x.parameter(share) * positive_part(x.at.input_power_W - x.at.shaft_power_W - x.at.copper_loss_W);
+    const S balance_W = named("input_minus_known_power_W", x.at.input_power_W - x.at.shaft_power_W - x.at.copper_loss_W);
+    const S unexplained_W = named("unexplained_power_W", positive_part(balance_W));
+    const S remaining_W = named("remaining_power_W", x.parameter(share) * unexplained_W);
     heat.source(winding, x.parameter(winding_share) * remaining_W);
     heat.source(stator, (1.0 - x.parameter(winding_share)) * remaining_W);
   }

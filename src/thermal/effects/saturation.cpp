@@ -9,7 +9,8 @@ struct Saturation {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S saturated = soft_step((x.at.current_rms_A / x.parameter(knee_current) - 1.0) / x.parameter(knee_width));
+    const S saturated =
+        named("saturation_share", soft_step((x.at.current_rms_A / x.parameter(knee_current) - 1.0) / x.parameter(knee_width)));
     heat.source(winding, x.parameter(excess) * x.at.copper_loss_W * saturated);
   }
 };

@@ -10,9 +10,9 @@ struct SpeedDependentConvection {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S speed_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
-    const S conductance_W_per_K = x.parameter(conductance) * power(speed_ratio, x.parameter(exponent));
-    heat.flow(hot, cold, conductance_W_per_K * (x.temperature_C(hot) - x.temperature_C(cold)));
+    const S conductance_W_per_K = named("forced_convection_conductance_W_per_K",
+                                        x.parameter(conductance) * power(speed_ratio(x.at.speed_mean_rad_per_s), x.parameter(exponent)));
+    heat.flow(hot, cold, conductance_W_per_K * x.difference_K(hot, cold));
   }
 };
 

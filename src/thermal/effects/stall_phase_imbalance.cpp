@@ -10,7 +10,7 @@ struct StallPhaseImbalance {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kStepsPerSpeed = 5.0;
-    const S stalled = soft_step(kStepsPerSpeed * (1.0 - x.at.speed_mean_rad_per_s / x.parameter(stall_speed)));
+    const S stalled = named("stalled_share", soft_step(kStepsPerSpeed * (1.0 - x.at.speed_mean_rad_per_s / x.parameter(stall_speed))));
     heat.source(winding, x.parameter(excess) * x.at.copper_loss_W * stalled);
   }
 };

@@ -58,9 +58,9 @@ S value_of_input(const Situation<S>& x) {
     case temperature:
       return x.temperature_C(watched);
     case temperature_difference:
-      return x.temperature_C(watched) - x.temperature_C(reference);
+      return x.difference_K(watched, reference);
     case neighbour_difference:
-      return x.at.knows(kNeighbour) ? S(x.at.neighbour_C - x.temperature_C(watched)) : S(0.0);
+      return x.at.knows(kNeighbour) ? S(difference_K(x.at.neighbour_C, x.temperature_C(watched))) : S(0.0);
     default:
       if (chosen_input >= column) {
         return x.at.*kQuantities<S>[column_row(static_cast<std::size_t>(chosen_input - column))].value;
@@ -80,17 +80,25 @@ S hottest(const Situation<S>& x) {
   return sign * most;
 }
 
+/// Share of a knot's value in the curve, at a distance in knots.
+template <class S>
+S knot_weight(const S& distance) {
+  return named("knot_weight_ratio", positive_part(named("one_minus_knot_distance_ratio", 1.0 - distance)));
+}
+
 struct Tabulated {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     constexpr double kLast = kKnots - 1;
     constexpr double kNoSpan = 1e-30;  // avoids 0/0 if the first and last knot coincide; the curve is then its first value
     const S span = x.parameter(last_knot) - x.parameter(first_knot);
-    const S place = kLast * (value_of_input(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan);
-    const S within = kLast - positive_part(kLast - positive_part(place));
-    S curve = x.parameter(first_value) * positive_part(1.0 - within);
+    const S place = named("curve_place_ratio", kLast * (value_of_input(x) - x.parameter(first_knot)) * span / (span * span + kNoSpan));
+    const S before_end = named("places_before_end_ratio", kLast - named("place_after_start_ratio", positive_part(place)));
+    const S within = named("place_within_knots_ratio", kLast - named("places_left_ratio", positive_part(before_end)));
+    S curve = x.parameter(first_value) * knot_weight(within);
     for (int knot = 1; knot < kKnots; ++knot) {
-      curve += x.parameter(first_value + knot) * positive_part(1.0 - magnitude(within - static_cast<double>(knot)));
+      const S offset = named("knot_offset_ratio", within - static_cast<double>(knot));
+      curve += x.parameter(first_value + knot) * knot_weight(S(named("knot_distance_ratio", magnitude(offset))));
     }
     if (const int own = chosen(x.parameter(input)) - column; own >= 0 && !x.at.knows(column_bit(static_cast<std::size_t>(own)))) {
       curve = hottest(x);
@@ -100,16 +108,16 @@ struct Tabulated {
         heat.source(hot, curve);
         break;
       case per_copper_loss:
-        heat.source(hot, curve * x.at.copper_loss_W);
+        heat.source(hot, named("curve_loss_ratio", curve) * x.at.copper_loss_W);
         break;
       case per_current:
-        heat.source(hot, curve * x.at.current_rms_A);
+        heat.source(hot, named("curve_voltage_V", curve) * x.at.current_rms_A);
         break;
       case per_speed:
-        heat.source(hot, curve * x.at.speed_mean_rad_per_s);
+        heat.source(hot, named("curve_torque_Nm", curve) * x.at.speed_mean_rad_per_s);
         break;
       default:
-        heat.flow(hot, cold, curve * (x.temperature_C(hot) - x.temperature_C(cold)));
+        heat.flow(hot, cold, named("curve_conductance_W_per_K", curve) * x.difference_K(hot, cold));
     }
   }
 };

@@ -10,8 +10,8 @@ struct ThirdNode {
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
     const S& coupling_W_per_K = x.parameter(conductance);
-    heat.flow(node, body, coupling_W_per_K * (x.temperature_C(node) - x.temperature_C(body)));
-    heat.flow(body, ambient, coupling_W_per_K * x.parameter(leak_ratio) * (x.temperature_C(body) - x.temperature_C(ambient)));
+    heat.flow(node, body, coupling_W_per_K * x.difference_K(node, body));
+    heat.flow(body, ambient, coupling_W_per_K * x.parameter(leak_ratio) * x.difference_K(body, ambient));
   }
 };
 

@@ -9,8 +9,9 @@ struct VehicleAirflow {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S conductance_W_per_K = x.parameter(conductance) * power(x.at.vehicle_speed_m_per_s, x.parameter(exponent));
-    heat.flow(hot, cold, conductance_W_per_K * (x.temperature_C(hot) - x.temperature_C(cold)));
+    const S conductance_W_per_K =
+        named("vehicle_airflow_conductance_W_per_K", x.parameter(conductance) * power(x.at.vehicle_speed_m_per_s, x.parameter(exponent)));
+    heat.flow(hot, cold, conductance_W_per_K * x.difference_K(hot, cold));
   }
 };
 

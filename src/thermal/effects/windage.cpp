@@ -10,9 +10,8 @@ struct Windage {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S mean_ratio = x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s;
-    const S rms_ratio = x.at.speed_rms_rad_per_s / kReferenceSpeed_rad_per_s;
-    heat.source(stator, x.parameter(loss) * mean_ratio * rms_ratio * rms_ratio);
+    const S rms_ratio = speed_ratio(x.at.speed_rms_rad_per_s);
+    heat.source(stator, x.parameter(loss) * speed_ratio(x.at.speed_mean_rad_per_s) * rms_ratio * rms_ratio);
   }
 };
 

@@ -10,8 +10,9 @@ struct WindingThroughFlow {
 
   template <class S>
   static void book(const Situation<S>& x, HeatBook<S>& heat) {
-    const S conductance_W_per_K = x.parameter(conductance) * (x.at.speed_mean_rad_per_s / kReferenceSpeed_rad_per_s);
-    heat.flow(hot, cold, conductance_W_per_K * (x.temperature_C(hot) - x.temperature_C(cold)));
+    const S conductance_W_per_K =
+        named("through_flow_conductance_W_per_K", x.parameter(conductance) * speed_ratio(x.at.speed_mean_rad_per_s));
+    heat.flow(hot, cold, conductance_W_per_K * x.difference_K(hot, cold));
   }
 };
 
