@@ -12,73 +12,12 @@
 #include "derate/export_text.h"
 #include "derate/integer_form/integer_lines.h"
 #include "derate/integer_form/quantised_table.h"
-#include "exported_motor.h"
-#include "support/skip_reasons.h"
+#include "q15_header.h"
 
 namespace heatsoak::derate {
 namespace {
 
 using testing::HasSubstr;
-
-/// Hard driving in both forms: shares of the current that the integer form allows, speeds, air, and occasionally a faulty sensor, each held
-/// for a while. Prints the largest excess current of the integer form in mA, its smallest and largest temperature difference in mK, and its
-/// largest shortfall in per mille at points at which the float form allows at least `straight_mA`.
-constexpr const char* kBoth = R"(
-#include "float_guard.h"
-#include "q15_guard.h"
-#include <stdio.h>
-#include <stdlib.h>
-static uint32_t seed = 12345u;
-static int32_t below(int32_t end) { seed = seed * 1664525u + 1013904223u; return (int32_t)(((uint64_t)seed * (uint32_t)end) >> 32); }
-int main(int argc, char **argv) {
-  const float straight_A = (float)atof(argv[1]);
-  const int broken = argc > 2;
-  MOTOR_state slow;
-  MOTOR_q15_state quick;
-  long i;
-  int hold = 0, share = 0;
-  float excess_mA = -1e9f, coldest_mK = 1e9f, hottest_mK = -1e9f, short_ratio = 0.0f;
-  int32_t allowed_mA = 0, speed = 0, air = 25000, sign = 1;
-  MOTOR_start(&slow, 31.0f);
-  MOTOR_q15_start(&quick, 31000);
-  for (i = 0; i < 200000; ++i) {
-    MOTOR_input in;
-    MOTOR_q15_input whole;
-    MOTOR_output out;
-    MOTOR_q15_output now;
-    float difference_mK;
-    if (hold-- == 0) {
-      hold = 1 + below(600);
-      share = below(3) == 0 ? 0 : 600 + below(401);
-      speed = below(4) == 0 ? 0 : below(500000) - 250000;
-      air = 15000 + below(25001);
-      sign = below(2) == 0 ? 1 : -1;
-    }
-    whole.current_mA = sign * (int32_t)((int64_t)allowed_mA * share / 1000);
-    whole.speed_mrad_per_s = speed;
-    whole.ambient_mC = air;
-    if (broken && below(200) == 0) {
-      whole.ambient_mC = -273150;
-    }
-    in.current_A = (float)whole.current_mA / 1000.0f;
-    in.speed_rad_per_s = (float)whole.speed_mrad_per_s / 1000.0f;
-    in.ambient_C = (float)whole.ambient_mC / 1000.0f;
-    out = MOTOR_step(&slow, &in);
-    now = MOTOR_q15_step(&quick, &whole);
-    allowed_mA = now.allowed_current_mA;
-    difference_mK = (float)now.guarded_winding_mC - 1000.0f * out.guarded_winding_C;
-    excess_mA = (float)now.allowed_current_mA - 1000.0f * out.allowed_current_A > excess_mA ? (float)now.allowed_current_mA - 1000.0f * out.allowed_current_A : excess_mA;
-    coldest_mK = difference_mK < coldest_mK ? difference_mK : coldest_mK;
-    hottest_mK = difference_mK > hottest_mK ? difference_mK : hottest_mK;
-    if (out.allowed_current_A >= straight_A) {
-      const float ratio = 1.0f - (float)now.allowed_current_mA / (1000.0f * out.allowed_current_A);
-      short_ratio = ratio > short_ratio ? ratio : short_ratio;
-    }
-  }
-  printf("%g %g %g %g\n", (double)excess_mA, (double)coldest_mK, (double)hottest_mK, 1000.0 * (double)short_ratio);
-  return 0;
-}
-)";
 
 /// Runs some thousand steps of the integer form, saves and restores, and prints a check sum of its answers.
 constexpr const char* kIntegerSteps = R"(
@@ -167,75 +106,22 @@ SECTIONS {
 }
 )";
 
-class Q15Header : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!has("cc")) {
-      GTEST_SKIP() << HEATSOAK_FAILS_CI "no compiler here";
-    }
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  static bool has(const std::string& program) { return std::system((program + " --version > /dev/null 2>&1").c_str()) == 0; }
-
-  void write(const char* file, const std::string& text, const Derating& derating) const {
-    std::ofstream(folder_ / file) << std::regex_replace(text, std::regex("MOTOR"), identifier(derating.motor_id));
-  }
-  void write_headers(const Derating& derating) const {
-    std::ofstream(folder_ / "float_guard.h") << exported("c_header", derating);
-    std::ofstream(folder_ / "q15_guard.h") << exported("c_header_q15", derating);
-  }
-  /// Returns the output of a command and reports errors as failures.
-  [[nodiscard]] std::string output_of(const std::string& command) const {
-    const auto in_folder = fmt::format("cd '{}' && {{ {}; }} > out 2> errors", folder_.string(), command);
-    const int code = std::system(in_folder.c_str());
-    std::stringstream out;
-    std::stringstream errors;
-    out << std::ifstream(folder_ / "out").rdbuf();
-    errors << std::ifstream(folder_ / "errors").rdbuf();
-    EXPECT_EQ(code, 0) << command << "\n" << errors.str();
-    return out.str();
-  }
-
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_q15_{}", static_cast<int>(getpid()));
-};
-
-constexpr const char* kWarnings =
-    "-O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Werror -ffp-contract=off";
-
-double number_after(const std::string& text, const std::string& pattern) {
-  std::smatch found;
-  EXPECT_TRUE(std::regex_search(text, found, std::regex(pattern))) << pattern;
-  return found.empty() ? std::nan("") : std::stod(found[1]);
-}
-
 TEST_F(Q15Header, AllowsNeverMoreThanSinglePrecisionAndLittleLess) {
   for (const char* const id : {"maxon_ecx_flat_32l_48v", "maxon_ecx_flat_42m_24v", "maxon_ec45_flat_70w_24v"}) {
     Derating derating = derating_of(shipped_motor(id));
     derating.motor_id = id;
-    const std::string header = exported("c_header_q15", derating);
+    const StatedLimits stated(exported("c_header_q15", derating), derating.table);
     write_headers(derating);
     write("both.c", kBoth, derating);
     static_cast<void>(output_of(fmt::format("cc -std=c99 {} -o both both.c -lm", kWarnings)));
-    const double excess_mK = 1000.0 * number_after(header, "are 0 to ([0-9.]+) K above");
-    const double table_permille = 10.0 * number_after(header, "at most ([0-9.]+) % below");
-    EXPECT_LT(excess_mK, 600.0) << id;
-    EXPECT_LT(table_permille, 50.0) << id;
-    // Current lost by such a temperature difference, from the steepest slope of the table.
-    const CurrentTable& table = derating.table;
-    const double by_heat_permille = excess_mK * table.bound.winding_slope_A_per_K / table.straight_below_A;
+    EXPECT_LT(stated.excess_mK, 600.0) << id;
+    EXPECT_LT(stated.table_permille, 50.0) << id;
     for (const char* const broken : {"", " broken"}) {
-      std::istringstream answer(output_of(fmt::format("./both {:.6g}{}", table.straight_below_A, broken)));
-      double most_mA = 0.0;
-      double coldest_mK = 0.0;
-      double hottest_mK = 0.0;
-      double short_permille = 0.0;
-      answer >> most_mA >> coldest_mK >> hottest_mK >> short_permille;
-      EXPECT_LE(most_mA, 0.0) << id << broken;
-      EXPECT_GE(coldest_mK, 0.0) << id << broken;
-      EXPECT_LE(hottest_mK, excess_mK + 1.0) << id << broken;
-      EXPECT_LE(short_permille, table_permille + by_heat_permille + 0.5) << id << broken;
+      const Comparison found = comparison(output_of(fmt::format("./both {:.6g} 200000{}", derating.table.straight_below_A, broken)));
+      EXPECT_LE(found.most_mA, 0.0) << id << broken;
+      EXPECT_GE(found.coldest_mK, 0.0) << id << broken;
+      EXPECT_LE(found.hottest_mK, stated.excess_mK + 1.0) << id << broken;
+      EXPECT_LE(found.short_permille, stated.short_permille) << id << broken;
     }
   }
 }

@@ -89,10 +89,6 @@ std::string header_text(const std::string& lines = {}) {
   return {};
 }
 
-std::string estimated(const std::string& key, const std::string& value) {
-  return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
-}
-
 class CHeader : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "derate/derating.h"
@@ -26,6 +27,15 @@ inline motor::Motor ecx_32_with(const std::string& lines) {
   motor::Motor motor = motor::read_motor(file);
   std::filesystem::remove(file);
   return motor;
+}
+
+/// Line of a motor's file with an estimated value, such as `estimated("loss", "0.5 W")`.
+inline std::string estimated(std::string_view key, std::string_view text) {
+  return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, text);
+}
+/// Table of an effect in a motor's file; `values` are its lines.
+inline std::string effect_table(std::string_view type, const std::string& values) {
+  return fmt::format("[effects.of_{0}]\ntype = \"{0}\"\n{1}\n", type, values);
 }
 
 /// Returns a heating curve over the temperature or speed in `lines`, with its maximum at the middle knot.
@@ -119,9 +129,6 @@ knee_width = { value = "0.1", origin = "estimated", derivation = "a test" }
 
 /// The ECX FLAT 32 L with a third body, such as a chassis, at the stator. Values with units as in a motor file.
 inline motor::Motor ecx_32_with_chassis(const char* heat_capacity, const char* conductance, const char* leak_ratio) {
-  const auto estimated = [](const char* key, const char* value) {
-    return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, value);
-  };
   return ecx_32_with("[effects.chassis]\ntype = \"third_node\"\n" + estimated("heat_capacity", heat_capacity) +
                      estimated("conductance", conductance) + estimated("leak_ratio", leak_ratio));
 }

@@ -18,17 +18,13 @@
 namespace heatsoak::derate {
 namespace {
 
-std::string value(const char* key, const char* text) {
-  return fmt::format("{} = {{ value = \"{}\", origin = \"estimated\", derivation = \"a test\" }}\n", key, text);
+std::string losses() {
+  return effect_table("iron_loss_hysteresis", estimated("loss", "0.5 W")) + effect_table("ac_copper_loss", estimated("share", "0.1"));
 }
 
-std::string effect(const char* type, const std::string& values) { return fmt::format("[effects.{0}]\ntype = \"{0}\"\n{1}", type, values); }
-
-std::string losses() { return effect("iron_loss_hysteresis", value("loss", "0.5 W")) + effect("ac_copper_loss", value("share", "0.1")); }
-
 std::string chassis() {
-  return "[effects.chassis]\ntype = \"third_node\"\n" + value("conductance", "0.3 W/K") + value("leak_ratio", "0.2") +
-         value("heat_capacity", "60 J/K");
+  return "[effects.chassis]\ntype = \"third_node\"\n" + estimated("conductance", "0.3 W/K") + estimated("leak_ratio", "0.2") +
+         estimated("heat_capacity", "60 J/K");
 }
 
 /// Expects that no loop with constant bounds runs fewer than two times.
@@ -67,15 +63,14 @@ TEST(ReadableCode, IntegerFormNamesQuantitiesByTheirUnits) {
 /// Values of an effect in a motor's file: the first variant as a candidate, or else the worked example.
 std::string in_a_file(const thermal::EffectType& type) {
   const std::vector<double>& values = type.candidacy.variants.empty() ? type.example.parameters : type.candidacy.variants.front();
-  std::string lines = fmt::format("[effects.of_{0}]\ntype = \"{0}\"\n", type.name);
+  std::string lines;
   for (std::size_t i = 0; i < type.parameters.size(); ++i) {
     const base::ParameterSpec& spec = type.parameters[i];
     const std::string_view unit = base::unit_of(type.parameters, i, values);
-    lines += spec.choices.empty()
-                 ? value(std::string(spec.key).c_str(), fmt::format("{}{}{}", values[i], unit.empty() ? "" : " ", unit).c_str())
-                 : fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
+    lines += spec.choices.empty() ? estimated(spec.key, fmt::format("{}{}{}", values[i], unit.empty() ? "" : " ", unit))
+                                  : fmt::format("{} = \"{}\"\n", spec.key, spec.choices[static_cast<std::size_t>(values[i])].name);
   }
-  return lines + "\n";
+  return effect_table(type.name, lines);
 }
 
 /// A derating with the laws of this motor and the table of another one, because only the laws are of interest.
@@ -88,7 +83,7 @@ Derating with_laws_of(const motor::Motor& motor) {
 }
 
 /// Names of the variables in the functions that compute the rates.
-std::vector<std::string> variables(const std::string& code, const std::string& function, const std::string& pattern) {
+std::vector<std::string> variable_names(const std::string& code, const std::string& function, const std::string& pattern) {
   std::vector<std::string> names;
   const std::regex variable(pattern);
   for (std::size_t at = code.find(function); at != std::string::npos; at = code.find(function, at + 1)) {
@@ -125,7 +120,7 @@ TEST_P(NamesOfLaw, are_quantities_with_units) {
     if (refusal(language.exporter, derating) != "accepted") {
       continue;
     }
-    const std::vector<std::string> names = variables(exported(language.exporter, derating), language.function, language.variable);
+    const std::vector<std::string> names = variable_names(exported(language.exporter, derating), language.function, language.variable);
     EXPECT_GT(names.size(), 4U) << language.exporter;
     for (const std::string& name : names) {
       const std::optional<base::UnitOfName> unit = base::unit_of_name(name);
