@@ -28,7 +28,7 @@ class Situation {
   const OperatingPoint<S>& at;  // NOLINT(misc-non-private-member-variables-in-classes): a view, read only
   const S& parameter(int declared_place) const { return parameters_[parameter_index_[declared_place]]; }
   const S& temperature_C(int role) const { return temperatures_C_[node_index_[role]]; }
-  S difference_K(int hot_role, int cold_role) const { return thermal::difference_K(temperature_C(hot_role), temperature_C(cold_role)); }
+  auto difference_K(int hot_role, int cold_role) const { return thermal::difference_K(temperature_C(hot_role), temperature_C(cold_role)); }
 
  private:
   const S* parameters_;

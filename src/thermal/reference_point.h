@@ -9,9 +9,9 @@ inline constexpr double kReferenceSpeed_rad_per_s = 500.0;
 inline constexpr double kReferenceCurrent_A = 5.0;
 inline constexpr double kReferenceBus_V = 24.0;
 
-/// Returns a speed relative to the reference.
+/// Returns a speed relative to the reference. Of Lanes the result refers to the argument.
 template <class S>
-S speed_ratio(const S& speed_rad_per_s) {
+auto speed_ratio(const S& speed_rad_per_s) {
   return named("speed_ratio", speed_rad_per_s / kReferenceSpeed_rad_per_s);
 }
 

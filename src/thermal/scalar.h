@@ -34,9 +34,10 @@ constexpr const S& named(std::string_view /*name*/, const S& quantity) {
   return quantity;
 }
 
-/// Returns the difference of two temperatures in K; its name in generated code is "winding_above_stator_K".
+/// Returns the difference of two temperatures in K; its name in generated code is "winding_above_stator_K". Of Lanes the result refers to
+/// the arguments.
 template <class S>
-S difference_K(const S& hot_C, const S& cold_C) {
+auto difference_K(const S& hot_C, const S& cold_C) {
   return hot_C - cold_C;
 }
 
