@@ -154,7 +154,8 @@ ParsedQuantity parse_quantity(std::string_view text, std::string_view wanted_uni
     return {0.0, fmt::format("\"{}\" is too large or too small a number", shown(text))};
   }
   if (error != std::errc()) {
-    return {0.0, fmt::format("\"{}\" does not begin with a number; {}", shown(text), example_for(wanted_unit, is_share))};
+    const std::string_view what = rest.starts_with('?') ? "is still to be filled in" : "does not begin with a number";
+    return {0.0, fmt::format("\"{}\" {}; {}", shown(text), what, example_for(wanted_unit, is_share))};
   }
   if (!std::isfinite(value)) {
     return {0.0, fmt::format("\"{}\" is not a finite number; {}", shown(text), example_for(wanted_unit, is_share))};

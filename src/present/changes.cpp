@@ -116,8 +116,8 @@ void add_changes(Document& document, const simulate::SuggestedChanges& changes, 
   for (const select::ChangeEffect* each : shown) {
     const std::string_view unit = select::unit_of(each->quantity);
     table.rows.push_back({{std::string(select::name_of(each->quantity))},
-                          {shown_value(each->before, unit)},
-                          {shown_value(each->before * each->factor, unit)},
+                          {shown_value(each->before.value(), unit)},
+                          {shown_value(each->before.value() * each->factor, unit)},
                           {fmt::format("{:.0f}", each->saved_K)}});
     if (is_drawn) {
       table.rows.back().push_back({each->standard_error_K ? fmt::format("{:.0f}", std::ceil(kErrors_sd * *each->standard_error_K)) : "–"});

@@ -219,6 +219,11 @@ TEST(Significant, says_what_is_no_number) {
   EXPECT_EQ(significant(std::nan(""), 3), "nan");
 }
 
+TEST(Quantity, a_placeholder_of_a_template_is_named) {
+  EXPECT_EQ(parse_quantity("? V", "V").problem, "\"? V\" is still to be filled in; expected a number with a unit such as \"1.5 V\"");
+  EXPECT_TRUE(parse_quantity("about ? V", "V").problem.starts_with("\"about ? V\" does not begin with a number"));
+}
+
 TEST(Quantity, an_error_names_an_example_that_fits) {
   EXPECT_TRUE(parse_quantity("3 ohm", "", true).problem.ends_with("expected a share such as \"10 %\""));
   EXPECT_TRUE(parse_quantity("3 ohm", "").problem.ends_with("expected a number such as \"8\""));
