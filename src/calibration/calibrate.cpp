@@ -347,8 +347,8 @@ class Calibrating {
       }
       parameter.low = parameter.value * std::exp(-below);
       parameter.high = parameter.value * std::exp(above);
-      // Without heat in the runs, values in watts rest on the file, however well the data determine the time constants.
-      const bool has_watts = each.origin == base::Origin::measured || !rests_on_watts(motor, each) || is_heated(motor, all_.runs);
+      // Without heat in the runs, values in watts are those of the file, however well the data determine the time constants.
+      const bool has_watts = each.origin == base::Origin::measured || !depends_on_heat(motor, each) || is_heated(motor, all_.runs);
       parameter.is_learned = has_watts && is_learned(sd, each);
       parameter.is_identifiable = has_watts && is_identifiable(sd, each);
       all_.parameters.push_back(std::move(parameter));
