@@ -367,7 +367,7 @@ TEST_P(CHeader, takes_the_hottest_accepted_speed_for_an_impossible_one) {
     }
     return ask(lines).back();
   };
-  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s;
+  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s.value();
   const Answer fastest = after(0.999 * last_rad_per_s);
   EXPECT_NE(fastest.reason, input_unknown);
   for (const double speed_rad_per_s : {std::nan(""), 1.001 * last_rad_per_s, -1e5}) {
@@ -403,7 +403,7 @@ TEST_P(CHeader, does_not_accept_air_colder_than_declared) {
 
 TEST_P(CHeader, gives_no_current_beyond_its_table) {
   const double most_rad_per_s = rules_for(ecx_32()).most_speed_rad_per_s;
-  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s;
+  const double last_rad_per_s = rules_for(ecx_32()).no_current_speed_rad_per_s.value();
   EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", last_rad_per_s))[0].reason, no_current);
   EXPECT_EQ(ask(fmt::format("start 30\nin 0 {} 25\n", -1.1 * last_rad_per_s))[0].allowed_A, 0.0F);
   // A motor pushed beyond the table's last full row can still brake.
