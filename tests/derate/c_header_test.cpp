@@ -243,7 +243,8 @@ TEST_P(CHeader, converts_the_current_of_field_oriented_control_by_torque_and_nev
 TEST_P(CHeader, brings_its_own_exponential_and_power) {
   const std::string laws = kPowerAndExponential;
   const std::string text = header_text(laws);
-  EXPECT_THAT(text, testing::AllOf(testing::ContainsRegex("_W = .*heatsoak_exp\\("), testing::ContainsRegex("_W = .*heatsoak_pow\\("),
+  EXPECT_THAT(text, testing::AllOf(testing::ContainsRegex("saturation_share = .*heatsoak_exp\\("),
+                                   testing::ContainsRegex("natural_convection_conductance_W_per_K = .*heatsoak_pow\\("),
                                    HasSubstr("static inline float heatsoak_exp(")));
   EXPECT_THAT(text, testing::Not(testing::AnyOf(HasSubstr("expf("), HasSubstr("powf("))));
   EXPECT_THAT(header_text(), testing::Not(HasSubstr("heatsoak_exp")));
