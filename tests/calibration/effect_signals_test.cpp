@@ -98,7 +98,7 @@ TEST(EffectSignals, ANegativeAgeIsRefused) {
     FAIL() << "a negative age was accepted";
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
-    EXPECT_THAT(failure.what(), testing::AllOf(HasSubstr("old.csv:5:0: error: age_h: is -2 h"), HasSubstr("0 or more")));
+    EXPECT_THAT(failure.what(), testing::AllOf(HasSubstr("old.csv:5: error: age_h: is -2 h"), HasSubstr("0 or more")));
   }
 }
 
