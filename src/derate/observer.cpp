@@ -84,8 +84,8 @@ Observer::Observer(const thermal::Network& network, const motor::MotorValues& mo
       const thermal::TracedHeat& here = heat[static_cast<std::size_t>(node)];
       const std::string name = state_names_[static_cast<std::size_t>(node)] + std::string(of);
       const thermal::Traced losses_W = thermal::named(name + "_losses_W", here.made_W);
-      const thermal::Traced heat_W =
-          thermal::named(name + "_heat_W", heat_ratio * losses_W + thermal::named(name + "_inflow_W", here.moved_W));
+      const thermal::Traced guarded_W = thermal::named(name + "_guarded_losses_W", heat_ratio * losses_W);
+      const thermal::Traced heat_W = thermal::named(name + "_heat_W", guarded_W + thermal::named(name + "_inflow_W", here.moved_W));
       const thermal::Traced rate_K_per_s = heat_W / values[static_cast<std::size_t>(network.capacity_index(node))];
       steps.push_back(thermal::named(name + "_rate_K_per_s", rate_K_per_s).step_in(formula_));
     }
