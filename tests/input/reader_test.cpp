@@ -122,7 +122,7 @@ constexpr base::ParameterSpec kShare{"share", "", base::Range::between(0.0, 1.0)
 
 TEST_F(ReaderTest, a_tolerance_stays_within_the_possible_range) {
   read("share = { value = \"0.9\", origin = \"measured\", source = \"s\", tolerance = \"20 %\" }").parameter(kShare, Need::required);
-  EXPECT_THAT(places(), ElementsAre("1:69 share.tolerance"));
+  EXPECT_THAT(places(), ElementsAre("1:73 share.tolerance"));
   EXPECT_EQ(message(),
             "reaches 0.72 to 1.08, beyond the possible range; expected 0 to 1; give a smaller tolerance, or a range in place of it");
 }
