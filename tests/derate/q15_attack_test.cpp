@@ -54,9 +54,9 @@ class Q15Attack : public Q15Header {
 
 TEST_F(Q15Attack, AllowsNeverMoreThanSinglePrecisionInEveryMotorOfTheDatabase) {
   for (const std::string& id : motors_of_database()) {
-    Derating derating = derating_of(shipped_motor(id));
-    derating.motor_id = id;
-    attack(derating, id, 20000);
+    DerateOptions options;
+    options.guarantee.samples = 60;
+    attack(run_derating({.robot = twente(), .motor = shipped_motor(id), .options = options}).derating, id, 20000);
   }
 }
 

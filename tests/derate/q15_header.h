@@ -120,8 +120,7 @@ class Q15Header : public testing::Test {
 inline constexpr const char* kWarnings =
     "-O2 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Werror -ffp-contract=off";
 
-inline double number_after(const std::string& comment, const std::string& pattern) {
-  const std::string text = std::regex_replace(comment, std::regex("\n \\* "), " ");  // a sentence may continue on the next line
+inline double number_after(const std::string& text, const std::string& pattern) {
   std::smatch found;
   EXPECT_TRUE(std::regex_search(text, found, std::regex(pattern))) << pattern;
   return found.empty() ? std::nan("") : std::stod(found[1]);
