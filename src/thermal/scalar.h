@@ -26,12 +26,12 @@ inline double soft_step(double x) {
   return (x < 0.0 ? decay : 1.0) / (1.0 + decay);
 }
 
-/// Returns `quantity`, an intermediate quantity of a law. Generated code has a line of its own for it, under `name`, which ends in the
+/// Returns `x`, an intermediate quantity of a law. Generated code has a line of its own for it, under `name`, which ends in the
 /// unit: "air_gap_conductance_W_per_K". Only Traced records the name; for every other type the call has no cost. A law names each step that
 /// it uses more than once, and each operand of magnitude() and positive_part().
 template <class S>
-constexpr const S& named(std::string_view /*name*/, const S& quantity) {
-  return quantity;
+constexpr const S& named(std::string_view /*name*/, const S& x) {
+  return x;
 }
 
 /// Returns the difference of two temperatures in K; its name in generated code is "winding_above_stator_K". Of Lanes the result refers to
