@@ -9,6 +9,13 @@
 
 namespace heatsoak::derate {
 
+/// Heat at the highest speed that a format cannot express, with the safety factor.
+struct OmittedHeat {
+  double loss_W = 0.0;
+  double rise_K = 0.0;  ///< steady rise of the stator over the air due to `loss_W`, by which the winding of the file may be too cold
+  double speed_rad_per_s = 0.0;
+};
+
 struct ExporterType {
   std::string_view name;  ///< the file's name; set by all_exporters()
   std::string_view summary;
@@ -17,6 +24,8 @@ struct ExporterType {
   std::string (*write)(const Derating& derating) = nullptr;
   /// Writes the format with a binary built by the named C compiler; null if the format contains no binary.
   std::string (*write_compiled)(const Derating& derating, const std::string& compiler) = nullptr;
+  /// Returns the heat that the format omits; null if it omits none.
+  OmittedHeat (*omitted)(const Derating& derating) = nullptr;
 };
 
 /// Returns the format that the ending of a file name, with its dot, selects; null if there is none.

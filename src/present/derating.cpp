@@ -81,6 +81,17 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
                     derating.nominal.winding_limit_C));
   }
   const derate::TableBound& bound = derating.table.bound;
+  const derate::TableGoal& goal = derating.options.table;
+  if (bound.shortfall_ratio > goal.shortfall_ratio) {
+    constexpr double kNearSize_share = 0.5;
+    const bool is_full = static_cast<double>(derating.table.size_bytes()) > kNearSize_share * static_cast<double>(goal.most_bytes);
+    document.add_note(
+        Severity::note,
+        fmt::format("Some current is lost: the table is up to {} % below the exact answer, more than the {} % of --error. {}",
+                    derate::significant_above(100.0 * bound.shortfall_ratio, 2), base::significant(100.0 * goal.shortfall_ratio, 2),
+                    is_full ? "A larger --size lowers the loss."
+                            : "More grid points do not help: the exact answer has an edge between them. A larger --error saves memory."));
+  }
   document.add_note(
       Severity::background,
       fmt::format("Table: {} bytes. Its current never exceeds the exact answer of the network. It is at most {} % lower, from {} A up. "
@@ -290,6 +301,14 @@ Document derating_document(const derate::DeratingJob& job, const derate::Deratin
         Severity::warning,
         fmt::format("{} may be read wrongly: its name is that of a {} file, but its format is {}; rename it, or leave out --to", out,
                     expected->name, job.exporter->name));
+  }
+  if (job.exporter && job.exporter->omitted) {
+    const derate::OmittedHeat heat = job.exporter->omitted(answer.derating);
+    document.headline.push_back(
+        {fmt::format("The winding in the {} file may be too cold: the format has no no-load loss ({:.1f} K at {:.0f} rad/s) and no heat "
+                     "capacity of the stator.",
+                     job.exporter->name, heat.rise_K, heat.speed_rad_per_s),
+         Tone::bad});
   }
   add_robot_notes(document, job.robot);
   document.data = derate::derating_json(answer.derating);

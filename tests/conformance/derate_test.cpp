@@ -34,14 +34,14 @@ share = { value = "0.2", origin = "estimated", derivation = "a test" }
 type = "winding_through_flow"
 conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
 )");
-  const auto table_with = [&](const Words& options) {
+  const auto table_with = [&](const Words& options, const testing::Matcher<std::string>& says) {
     const ProgramRun done = run(kDerateEcx + Words{"--motor", "lossy.toml", "--out", "guard.h", "--json", "-"} + options, here(folder));
     EXPECT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_THAT(done.err, HasSubstr("% lower, from"));
+    EXPECT_THAT(done.err, testing::AllOf(HasSubstr("% lower, from"), says));
     return done.json()["table"];
   };
-  const nlohmann::json fine = table_with({"--error", "0.5%"});
-  const nlohmann::json small = table_with({"--error", "0.5%", "--size", "80"});
+  const nlohmann::json fine = table_with({"--error", "0.5%"}, Not(HasSubstr("Some current is lost")));
+  const nlohmann::json small = table_with({"--error", "0.5%", "--size", "80"}, HasSubstr("more than the 0.5 % of --error"));
   EXPECT_LE(fine["bound"]["shortfall_ratio"].get<double>(), 0.005);
   EXPECT_GT(small["bound"]["shortfall_ratio"].get<double>(), 0.005);
   const auto bytes = [](const nlohmann::json& table) {
@@ -49,6 +49,17 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
   };
   EXPECT_LE(bytes(small), 80U);
   EXPECT_GT(bytes(fine), 80U);
+}
+
+// <dcmotor> has one thermal resistance and no loss at speed. That is unsafe, so it is printed even with --quiet.
+TEST(DerateCommand, StatesTheHeatThatAFormatOmits) {
+  const TemporaryFolder folder;
+  const Words motor{"--motor", "maxon_ecx_flat_32l_48v", "--quiet"};
+  const ProgramRun mujoco = run(kDerateEcx + motor + Words{"--to", "mujoco", "--out", "motor.xml"}, here(folder));
+  EXPECT_EQ(mujoco.exit_code, 0) << mujoco.err;
+  EXPECT_THAT(mujoco.out, HasSubstr("The winding in the mujoco file may be too cold"));
+  const ProgramRun header = run(kDerateEcx + motor + Words{"--out", "guard.h"}, here(folder));
+  EXPECT_THAT(header.out, Not(HasSubstr("mujoco")));
 }
 
 TEST(DerateCommand, TellsWhatItGuarantees) {

@@ -11,6 +11,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/export_text.h"
 #include "exported_motor.h"
+#include "sensed_motor.h"
 #include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
@@ -36,16 +37,24 @@ const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};
 struct Form {
   const char* name;
   const char* exporter;
-  const char* laws;  ///< appended to the motor's data sheet
+  const char* laws = "";  ///< appended to the motor's data sheet
+  std::optional<SensorOptions> sensor = {};
 };
+
+/// Derating of a form's motor with its effects or its sensor.
+Derating derating_for(const Form& form) {
+  const std::string_view laws = form.laws;
+  if (form.sensor) {
+    return derate(ecx_32(), twente(), quick_options(*form.sensor));
+  }
+  return laws.empty() ? ecx_derating() : derating_of(ecx_32_with(std::string(laws)));
+}
 
 class CleanHeader : public testing::TestWithParam<Form> {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
-    const std::string_view laws = GetParam().laws;
-    std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter,
-                                                   laws.empty() ? ecx_derating() : derating_of(ecx_32_with(std::string(laws))));
+    std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter, derating_for(GetParam()));
     const std::string prefix = identifier(ecx_derating().motor_id) + (std::string_view(GetParam().exporter) == "c_header" ? "" : "_q15");
     std::ofstream(folder_ / "use.c") << std::regex_replace(kUse, std::regex("PREFIX"), prefix);
   }
@@ -69,10 +78,15 @@ class CleanHeader : public testing::TestWithParam<Form> {
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_clean_{}", static_cast<int>(getpid()));
 };
 
-INSTANTIATE_TEST_SUITE_P(Headers, CleanHeader,
-                         testing::Values(Form{"c_header", "c_header", ""}, Form{"c_header_q15", "c_header_q15", ""},
-                                         Form{"c_header_with_power_and_exponential", "c_header", kPowerAndExponential}),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Headers, CleanHeader,
+    testing::Values(Form{"c_header", "c_header"}, Form{"c_header_q15", "c_header_q15"},
+                    Form{"c_header_with_power_and_exponential", "c_header", kPowerAndExponential},
+                    Form{"c_header_with_stator_thermistor", "c_header", "",
+                         SensorOptions{.node = motor::states::stator, .accuracy_K = 2.0}},
+                    Form{"c_header_with_winding_resistance", "c_header", "",
+                         SensorOptions{.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0}}),
+    [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
   for (const char* const compiler : {"cc -std=c99", "c++ -x c++ -std=c++11"}) {

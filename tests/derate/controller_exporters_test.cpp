@@ -40,6 +40,8 @@ Limit odrive_limit() {
   std::string text = exported("odrive");
   EXPECT_THAT(text, HasSubstr("\naxis = odrv0.axis0\n"));
   EXPECT_THAT(text, HasSubstr("\nodrv0.save_configuration()\n"));
+  // A firmware without the thermistor's settings stops there, with its former current.
+  EXPECT_GT(text.find("current_lim"), text.find("enabled = True"));
   text = std::regex_replace(text, std::regex("axis = odrv0.axis0\n|odrv0.save_configuration\\(\\)\n"), "");
   const auto values = lines_of(text, R"(^axis\.motor\.([a-z_.]+) = ([-0-9.A-Za-z]+)$)");
   EXPECT_EQ(values.at("motor_thermistor.config.enabled"), "True");

@@ -40,6 +40,12 @@ void require_datasheet_alone(const Derating& derating) {
   }
 }
 
+OmittedHeat no_load_heat(const Derating& derating) {
+  const double speed_rad_per_s = derating.rules.most_speed_rad_per_s;
+  const double loss_W = derating.observer.heat_safety_factor() * motor::drag_torque_Nm(derating.nominal) * speed_rad_per_s;
+  return {loss_W, loss_W * derating.nominal.thermal_resistance_stator_ambient_K_per_W, speed_rad_per_s};
+}
+
 /// MuJoCo: dT/dt = (R·i² − T/R_th)/C with R growing with the temperature. A safety factor r on heat becomes R_th·r and C/r.
 std::string write_mujoco(const Derating& derating) {
   require_finite(derating);
@@ -49,7 +55,7 @@ std::string write_mujoco(const Derating& derating) {
   const double winding_K_per_W = motor.thermal_resistance_winding_stator_K_per_W;
   const double stator_K_per_W = motor.thermal_resistance_stator_ambient_K_per_W;
   const double winding_J_per_K = motor.thermal_time_constant_winding_s / winding_K_per_W;
-  const double drag_W = motor::drag_torque_Nm(motor) * derating.rules.most_speed_rad_per_s;
+  const OmittedHeat omitted = no_load_heat(derating);
   const std::string about =
       provenance_lines(derating, "") +
       fmt::format(
@@ -61,9 +67,8 @@ std::string write_mujoco(const Derating& derating) {
           " pause it may be too cold by the stator's temperature rise), and no-load loss ({3:.2f} W and {4:.1f} K at {5:.0f} rad/s).\n"
           " Exact for a constant current at standstill.\n",
           in_attribute(derating.motor_id), derating.rules.hottest_ambient_C,
-          derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, drag_W,
-          derating.observer.heat_safety_factor() * drag_W * stator_K_per_W, derating.rules.most_speed_rad_per_s,
-          derating.observer.heat_safety_factor());
+          derating.rules.limits.winding_C - derating.rules.hottest_ambient_C, omitted.loss_W / derating.observer.heat_safety_factor(),
+          omitted.rise_K, omitted.speed_rad_per_s, derating.observer.heat_safety_factor());
   return fmt::format(
       "<!--\n{}-->\n"
       "<mujoco>\n"
@@ -85,7 +90,8 @@ std::string write_mujoco(const Derating& derating) {
 ExporterType mujoco() {
   return {.name = {},
           .summary = "MuJoCo defaults of a <dcmotor> with its thermal attributes; copper loss only, see its first lines",
-          .write = write_mujoco};
+          .write = write_mujoco,
+          .omitted = no_load_heat};
 }
 
 }  // namespace heatsoak::derate::exporters
