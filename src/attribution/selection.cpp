@@ -35,7 +35,7 @@ class Selector : Rounds {
     std::vector<std::size_t> named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       const double probability = search_->family_probability(best, m);
-      if (!is_parameter(best.members[m]) && probability > sure && rests_on_one_run(judged, best, m)) {
+      if (!is_parameter(best.members[m]) && probability > sure && needs_one_run(judged, best, m)) {
         refuse({.id = id_of(best.members[m]), .reason = RefusalReason::one_run_only});
         continue;
       }
@@ -81,7 +81,7 @@ class Selector : Rounds {
   [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
 
   /// True for an effect of all runs that left-out recordings do not confirm.
-  [[nodiscard]] bool rests_on_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
+  [[nodiscard]] bool needs_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
     if (!candidates()[static_cast<std::size_t>(best.members[member])].condition.empty()) {
       return false;
     }

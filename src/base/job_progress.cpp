@@ -55,8 +55,9 @@ double likely_remaining_s(const std::vector<Outcome>& ascending) {
 }  // namespace
 
 struct JobProgress::State {
-  /// Measured work of one kind.
+  /// Measured work of phases of one name.
   struct Measured {
+    std::string kind;
     double elapsed_s = 0.0;
     double work_s = 0.0;  ///< its expected duration
     double count = 0.0;   ///< number of ended phases
@@ -83,6 +84,7 @@ struct JobProgress::State {
   [[nodiscard]] std::map<std::string, Measured> measured() const {
     std::map<std::string, Measured> all = ended;
     Measured& own = all[present->what];
+    own.kind = present->kind;
     own.elapsed_s += report_s - present_begin_s;
     own.work_s += share * present->work_s;
     return all;
@@ -91,21 +93,29 @@ struct JobProgress::State {
   /// Returns the duration of a phase at the measured speeds.
   class Speeds {
    public:
-    Speeds(std::map<std::string, Measured> kinds, double later_s) : kinds_(std::move(kinds)) {
+    Speeds(std::map<std::string, Measured> names, double later_s) : names_(std::move(names)) {
       Measured job;
-      for (const auto& [what, kind] : kinds_) {
-        job.elapsed_s += kind.elapsed_s;
-        job.work_s += kind.work_s;
+      for (const auto& [what, measured] : names_) {
+        for (Measured* const sum : {&job, &kinds_[measured.kind]}) {
+          sum->elapsed_s += measured.elapsed_s;
+          sum->work_s += measured.work_s;
+        }
       }
       job_ratio_ = ratio(job, 1.0, kAssumed_share * (job.work_s + later_s));
     }
     [[nodiscard]] double duration_s(const JobPhase& phase) const {
-      const auto same = kinds_.find(phase.what);
-      return phase.work_s * (same == kinds_.end() ? job_ratio_ : ratio(same->second, job_ratio_, kAssumed_share * phase.work_s));
+      const double assumed_s = kAssumed_share * phase.work_s;
+      const auto ratio_in = [&](const std::map<std::string, Measured>& all, const std::string& key, double otherwise) {
+        const auto same = all.find(key);
+        return same == all.end() ? otherwise : ratio(same->second, otherwise, assumed_s);
+      };
+      const double kind_ratio = phase.kind.empty() ? job_ratio_ : ratio_in(kinds_, phase.kind, job_ratio_);
+      return phase.work_s * ratio_in(names_, phase.what, kind_ratio);
     }
 
    private:
-    static constexpr double kAssumed_share = 0.02;  ///< the first reports of a job, and of a kind, do not decide alone
+    static constexpr double kAssumed_share = 0.02;  ///< the first reports of a job, a kind and a name do not decide alone
+    std::map<std::string, Measured> names_;
     std::map<std::string, Measured> kinds_;
     double job_ratio_ = 1.0;
   };
@@ -137,6 +147,7 @@ struct JobProgress::State {
   void end_present(double time_s) {
     if (present) {
       Measured& own = ended[present->what];
+      own.kind = present->kind;
       own.elapsed_s += time_s - present_begin_s;
       own.work_s += present->work_s;
       own.count += 1.0;
@@ -178,7 +189,8 @@ Progress JobProgress::begin(const std::string& what) const {
   const auto expected = std::ranges::find(state.later, what, &JobPhase::what);
   if (expected == state.later.end()) {
     const auto same = state.ended.find(what);
-    state.present = JobPhase{what, same == state.ended.end() ? 0.0 : same->second.work_s / same->second.count};
+    state.present =
+        same == state.ended.end() ? JobPhase{what} : JobPhase{what, same->second.work_s / same->second.count, 1.0, same->second.kind};
   } else {
     state.present = *expected;
     state.later.erase(state.later.begin(), std::next(expected));

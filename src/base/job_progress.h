@@ -16,6 +16,7 @@ struct JobPhase {
   std::string what;          ///< name for the user; phases of the same name are work of the same kind
   double work_s = 0.0;       ///< expected duration in s on a usual computer
   double probability = 1.0;  ///< probability that the phase takes place
+  std::string kind = {};     ///< kind of work, whose measured speed counts until that of `what` is measured; may be empty
 };
 
 struct JobEstimate {
@@ -33,8 +34,8 @@ struct JobEstimate {
 /// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
 /// ignores all calls.
 ///
-/// Once work has been measured, only the ratios of the expected durations count. Each kind of phase is scaled by its own measured speed; a
-/// kind that has not begun is scaled by the mean speed of the job.
+/// Once work has been measured, only the ratios of the expected durations count. Each name of a phase is scaled by its own measured speed;
+/// a name that has not begun by that of its kind, and a kind that has not begun by the mean speed of the job.
 ///
 /// If phases may be left out, the remaining time has several values, each with a probability. A phase is taken to follow only together with
 /// all phases that are more probable.

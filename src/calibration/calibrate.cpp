@@ -91,7 +91,7 @@ class Calibrating {
       setup_.opens_loss_at_speed = true;
       all_.findings.push_back(LossAtSpeedUnknown{most_loss_W});
     }
-    options_.progress.expect(calibration_work(all_.runs));
+    options_.progress.expect(calibration_work(all_.runs, options_.fit.threads));
     options_.progress.begin(calibration_phases::kFitting);
     all_.fit = estimation::fit(all_.motor_model.model, all_.runs, options_.fit);
     settle_turning_rows();
@@ -122,8 +122,7 @@ class Calibrating {
     const ForecastModel base = setup_.model();
     all_.forecast =
         forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads, options_.progress);
-    options_.progress.begin(calibration_phases::kLeavingOut);
-    score_innovations(setup_.model(), options_.fit, all_);
+    score_innovations(setup_.model(), options_.fit, all_, options_.progress.begin(calibration_phases::kLeavingOut));
     options_.progress.begin(calibration_phases::kPredicting);
     const std::vector<PredictedRun> by_innovations = fitted_runs(base, base.within_bounds(all_.fit.theta));
     innovations_error_ = errors_over_runs(by_innovations, by_innovations);

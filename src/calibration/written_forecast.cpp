@@ -51,7 +51,8 @@ Eigen::MatrixXd covering(const Eigen::MatrixXd& one, const Eigen::MatrixXd& othe
 
 }  // namespace
 
-void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration) {
+void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration,
+                       const base::Progress& progress) {
   Forecast& forecast = *calibration.forecast;
   if (forecast.rivals.empty()) {
     return;
@@ -69,7 +70,13 @@ void score_innovations(const ForecastModel& model, estimation::FitOptions option
     }
     return found;
   };
-  const PieceScore score = score_pieces(model, calibration.runs, forecast.pieces, fit_without);
+  std::size_t scored = 0;
+  const auto after_piece = [&] {
+    if (progress) {
+      progress(++scored, forecast.pieces.size());
+    }
+  };
+  const PieceScore score = score_pieces(model, calibration.runs, forecast.pieces, fit_without, after_piece);
   const PieceScore own = score_pieces(model, calibration.runs, forecast.pieces, calibration.fit.theta, nullptr);
   forecast.rivals.push_back(rival_score(ForecastSource::innovations, score, own, calibration.runs));
 }

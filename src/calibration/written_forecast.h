@@ -11,7 +11,8 @@
 namespace heatsoak::calibration {
 
 /// Adds the innovations fit to the rivals of the forecast, scored on the same left-out pieces. Does nothing without pieces.
-void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration);
+void score_innovations(const ForecastModel& model, estimation::FitOptions options, Calibration& calibration,
+                       const base::Progress& progress = {});
 
 /// Returns whether the forecast's parameters are written. With WrittenFit::best they must come from a fit, not from the file. They must
 /// also predict the left-out pieces better than the innovations fit, by kLeastGain_nats and by 0.1 K rms in at least one signal. Without

@@ -452,10 +452,7 @@ CheckFile read_check_file(const fs::path& path, const input::DataFolders& folder
   const input::Value root = input::read_toml(path);
   base::Diagnostics diagnostics;
   if (const std::optional<duty::FileKind> kind = duty::evident_kind(root); kind && root.find("check") == nullptr) {
-    throw base::bad_input({path.string()}, "",
-                          fmt::format("is a {} file; expected a file with [[check]] tables, as `heatsoak check --help` shows. `heatsoak "
-                                      "lint FILE` checks a {} file",
-                                      duty::to_string(*kind), duty::to_string(*kind)));
+    throw duty::other_kind(path, *kind, "[[check]] tables, as `heatsoak check --help` shows");
   }
   if (const input::Value* one = root.find("check"); one != nullptr && one->kind == input::Value::Kind::table) {
     throw base::bad_input(one->at, "check", "is a single table; expected [[check]], in two brackets, for each check");

@@ -1,5 +1,7 @@
 #include "duty/file_kind.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "duty/duty.h"
@@ -30,5 +32,11 @@ std::optional<FileKind> evident_kind(const input::Value& root) {
 }
 
 FileKind file_kind(const std::filesystem::path& file) { return evident_kind(input::read_toml(file)).value_or(FileKind::motor); }
+
+base::Failure other_kind(const std::filesystem::path& file, FileKind kind, std::string_view expected) {
+  return base::bad_input(
+      {file.string()}, "",
+      fmt::format("is a {0} file; expected a file with {1}. `heatsoak lint FILE` checks a {0} file", to_string(kind), expected));
+}
 
 }  // namespace heatsoak::duty

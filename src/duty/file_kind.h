@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/diagnostic.h"
 #include "input/document.h"
 
 namespace heatsoak::duty {
@@ -18,5 +19,8 @@ std::optional<FileKind> evident_kind(const input::Value& root);
 
 /// Returns the kind of a file; motor if the keys do not determine it. Throws Failure (bad_input) if the file is not valid TOML.
 FileKind file_kind(const std::filesystem::path& file);
+
+/// Returns the Failure for a file of this kind where one with other contents was expected.
+base::Failure other_kind(const std::filesystem::path& file, FileKind kind, std::string_view expected);
 
 }  // namespace heatsoak::duty

@@ -22,11 +22,11 @@ void Findings::add(LintFinding::Level level, std::string_view key, LintClause wh
 }
 
 LintFinding::Level level_of_contradiction(const Motor& motor, std::initializer_list<std::string_view> keys) {
-  const bool rests_on_estimate = std::ranges::any_of(keys, [&](std::string_view key) {
+  const bool is_estimated = std::ranges::any_of(keys, [&](std::string_view key) {
     const auto parameter = motor.parameters.find(key);
     return parameter != motor.parameters.end() && parameter->second.origin == base::Origin::estimated;
   });
-  return rests_on_estimate ? LintFinding::Level::warning : LintFinding::Level::error;
+  return is_estimated ? LintFinding::Level::warning : LintFinding::Level::error;
 }
 
 bool is_complete(const Motor& motor) {

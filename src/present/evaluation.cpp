@@ -68,7 +68,7 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
       {"margin", "K", 0, kRight, kLeastForLimit, false,
        is_drawn ? "to the nearer limit, from the 95th percentile of the samples" : nominal("to the nearer limit")},
       {"winding", "", 1, kLeft, 0, false, nominal("temperature over time, from ambient to limit,")},
-      {"over limit", "%", 2, kRight, 0, false, "share of the samples that exceed a temperature limit"},
+      {"samples over", "%", 2, kRight, 0, false, "share of the samples that exceed a temperature limit"},
       {"exceeded after", "", 3, kRight, 0, false, nominal("time until the first limit is exceeded")},
       {"limited by", "", 4, kLeft, 0, false, "limit that decides the verdict"},
       {"current", "A rms", 5, kRight, 0, false, nominal("heating current")},
@@ -76,7 +76,7 @@ std::vector<Column> columns(bool is_drawn, bool is_sampled) {
       {"stator", "°C", 7, kRight, 0, false, nominal("peak of the stator")},
       {"stator limit", "°C", 8},
       {"data", "", 9, kLeft, 0, false, "worst origin of the thermal values"},
-      {"over limit, interval", "%", 10, kRight, 0, false,
+      {"samples over, interval", "%", 10, kRight, 0, false,
        fmt::format("share over a limit that infinitely many samples would have, with a confidence of {} over all repeated tests", level)},
       {"p95, interval", "°C", 11, kRight, 0, false, "range of the 95th percentile of the peak, if other samples were drawn, " + level}};
 }

@@ -98,19 +98,19 @@ motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) 
   std::ofstream out(file);
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
          "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
-  const auto figure = [&](const char* key, double value, const char* unit) {
+  const auto put = [&](const char* key, double value, const char* unit) {
     out << fmt::format("{} = {{ value = \"{:.6g} {}\", origin = \"datasheet\", source = \"s\" }}\n", key, value, unit);
   };
-  figure("nominal_voltage", 24.0, "V");
-  figure("terminal_resistance", make.resistance_25C_ohm, "ohm");
-  figure("torque_constant", 0.034, "N m/A");
-  figure("no_load_current", 0.0, "A");
-  figure("temperature_coefficient", make.copper_per_K, "1/K");
-  figure("winding_limit", 155.0, "degC");
-  figure("thermal_resistance_winding_stator", 1.15 * make.copper_to_iron_K_per_W, "K/W");
-  figure("thermal_resistance_stator_ambient", 0.9 * make.iron_to_air_K_per_W, "K/W");
-  figure("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
-  figure("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
+  put("nominal_voltage", 24.0, "V");
+  put("terminal_resistance", make.resistance_25C_ohm, "ohm");
+  put("torque_constant", 0.034, "N m/A");
+  put("no_load_current", 0.0, "A");
+  put("temperature_coefficient", make.copper_per_K, "1/K");
+  put("winding_limit", 155.0, "degC");
+  put("thermal_resistance_winding_stator", 1.15 * make.copper_to_iron_K_per_W, "K/W");
+  put("thermal_resistance_stator_ambient", 0.9 * make.iron_to_air_K_per_W, "K/W");
+  put("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
+  put("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
   out.close();
   return motor::read_motor(file);
 }

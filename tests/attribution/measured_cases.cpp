@@ -48,10 +48,10 @@ const diagnosis::FoundEffect* effect_of(const diagnosis::Diagnosis& diagnosis, s
 
 motor::Motor guessed_otherwise(motor::Motor motor, const std::map<std::string, double>& factor) {
   for (const auto& [key, by] : factor) {
-    base::ParameterValue& figure = *motor::find_parameter(motor, key);
-    figure.value *= by;
-    figure.spread->low *= by;
-    figure.spread->high *= by;
+    base::ParameterValue& value = *motor::find_parameter(motor, key);
+    value.value *= by;
+    value.spread->low *= by;
+    value.spread->high *= by;
   }
   motor::refresh_values(motor);
   return motor;

@@ -36,7 +36,8 @@ TEST(DidYouMean, takes_the_nearer_of_two) {
 
 TEST(Diagnostic, is_written_so_that_editors_jump) {
   EXPECT_EQ(to_string(Diagnostic{{"a.toml", 3, 7}, "figures.mass", "is missing"}), "a.toml:3:7: error: figures.mass: is missing");
-  EXPECT_EQ(to_string(Diagnostic{{"a.toml", 0, 0}, "", "cannot be read"}), "a.toml: error: cannot be read");
+  EXPECT_EQ(to_string(Diagnostic{{"a.toml"}, "", "cannot be read"}), "a.toml: error: cannot be read");
+  EXPECT_EQ(to_string(Location{"a.toml", 3}), "a.toml:3");
   EXPECT_EQ(to_string(Diagnostic{{}, "", "no place"}), "error: no place");
 }
 

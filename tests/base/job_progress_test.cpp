@@ -130,6 +130,19 @@ TEST(JobProgress, measures_each_kind_of_work) {
             1.3);
 }
 
+// A phase that has not begun counts with the speed of its kind: "test" is as slow as "fit", although most of the job was fast.
+TEST(JobProgress, a_new_phase_has_the_speed_of_its_kind) {
+  double time_s = 0.0;
+  const JobProgress job([&time_s] { return time_s; });
+  job.expect({{"read", 10.0}, {"fit", 1.0, 1.0, "slow"}, {"test", 10.0, 1.0, "slow"}, {"write", 1.0}});
+  job.begin("read");
+  time_s = 10.0;
+  const Progress fit = job.begin("fit");
+  time_s = 20.0;
+  fit(1, 1);
+  EXPECT_NEAR(*job.estimate().longest_s, 100.0, 15.0);
+}
+
 TEST(JobProgress, a_phase_without_reports_proceeds_as_expected) {
   EXPECT_LT(worst_ratio({{"read", 1.0, 1.0, 0}, {"fit", 9.0, 9.0, 0}, {"write", 10.0, 10.0, 0}}, 0.0), 2.0);
   EXPECT_LT(worst_ratio({{"read", 2.0, 2.0, 0}, {"fit", 10.0, 14.0, 0}, {"write", 10.0, 12.0, 0}}, 0.2, 0.9), 2.0);

@@ -202,7 +202,7 @@ TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   EXPECT_GT(fit.weight, 0.0);
   EXPECT_LT(fit.weight, 0.5) << "errors of slow unknown heat are correlated";
   // The covariance must be wider by the same factor.
-  ForecastRules all_count{.held_error_K = fit.error_K, .held_weight = 1.0};
+  ForecastRules all_count{.held = ForecastErrorModel{fit.error_K, 1.0}};
   const ForecastFit sure = fit_forecast(model, runs, {}, fit.theta, all_count);
   EXPECT_GT(fit.covariance(0, 0), 1.5 * sure.covariance(0, 0));
 }

@@ -262,10 +262,10 @@ TEST(DutyMatch, an_option_without_effect_is_refused) {
 TEST(Describe, a_match_shows_every_input_with_its_range) {
   const json described = run({"describe", "division_a_match", "--json", "-"}).json();
   ASSERT_FALSE(described.at("figures").empty());
-  for (const json& figure : described.at("figures")) {
-    EXPECT_LT(figure.at("range").at(0).get<double>(), figure.at("range").at(1).get<double>()) << figure.at("key");
-    EXPECT_NE(figure.at("meaning"), "");
-    EXPECT_NE(figure.at("derivation"), "");
+  for (const json& parameter : described.at("figures")) {
+    EXPECT_LT(parameter.at("range").at(0).get<double>(), parameter.at("range").at(1).get<double>()) << parameter.at("key");
+    EXPECT_NE(parameter.at("meaning"), "");
+    EXPECT_NE(parameter.at("derivation"), "");
   }
 }
 

@@ -71,10 +71,10 @@ TEST(RobotFile, keeps_everything_else_as_it_stands) {
   EXPECT_THAT(text, HasSubstr("rotation = { value = \"1 mN m\", origin = \"derived\""));
   EXPECT_THAT(text, Not(HasSubstr("double_angle")));
   const robot::Robot after = robot::parse_robot(text, kFile);
-  for (const auto& [key, figure] : before.parameters) {
+  for (const auto& [key, parameter] : before.parameters) {
     if (key != "friction.wheel_damping" && !key.starts_with("friction.heading")) {
       ASSERT_TRUE(after.parameters.contains(key)) << key;
-      EXPECT_EQ(after.parameters.at(key).printed, figure.printed) << key;
+      EXPECT_EQ(after.parameters.at(key).printed, parameter.printed) << key;
     }
   }
   EXPECT_EQ(after.parameters.at("friction.wheel_damping").origin, base::Origin::measured);

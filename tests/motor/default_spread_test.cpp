@@ -59,22 +59,22 @@ TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
     for (int round = 0; round < 20; ++round) {
       Motor stripped = honest;
       std::size_t count = 0;
-      for (auto& [key, figure] : stripped.parameters) {
+      for (auto& [key, parameter] : stripped.parameters) {
         if (needs_spread(key) && (round == 0 || engine() % 2 == 0)) {
-          figure.spread.reset();
+          parameter.spread.reset();
           ++count;
         }
       }
       EXPECT_THAT(default_spreads(stripped), SizeIs(count));
       const Motor filled = with_default_spreads(stripped);
-      for (const auto& [key, figure] : honest.parameters) {
+      for (const auto& [key, parameter] : honest.parameters) {
         if (!needs_spread(key)) {
           continue;
         }
         for (int i = 1; i < 100; ++i) {
           const double uniform = 0.01 * i;
-          const double distance = std::abs(figure.quantile(uniform) - figure.value);
-          EXPECT_GE(std::abs(filled.parameters.at(key).quantile(uniform) - figure.value), distance * (1.0 - 1e-12))
+          const double distance = std::abs(parameter.quantile(uniform) - parameter.value);
+          EXPECT_GE(std::abs(filled.parameters.at(key).quantile(uniform) - parameter.value), distance * (1.0 - 1e-12))
               << honest.id << ", " << key << " at " << uniform;
         }
       }
@@ -84,15 +84,15 @@ TEST(DefaultSpread, StandsOutsideOfEveryHonestSpreadThatItReplaces) {
 
 TEST(DefaultSpread, WorseOriginsGetNoNarrowerOnes) {
   Motor motor = ecx_32();
-  for (auto& [key, figure] : motor.parameters) {
-    figure.spread.reset();
+  for (auto& [key, parameter] : motor.parameters) {
+    parameter.spread.reset();
   }
   std::vector<DefaultSpread> before;
   // An origin "measured" without an interval counts as no measurement.
   for (const base::Origin origin :
        {base::Origin::datasheet, base::Origin::third_party, base::Origin::derived, base::Origin::estimated, base::Origin::measured}) {
-    for (auto& [key, figure] : motor.parameters) {
-      figure.origin = origin;
+    for (auto& [key, parameter] : motor.parameters) {
+      parameter.origin = origin;
     }
     const std::vector<DefaultSpread> now = default_spreads(motor);
     ASSERT_THAT(now, SizeIs(7));
@@ -115,16 +115,16 @@ TEST(DefaultSpread, OfEverythingThatTemperaturesDependOn) {
 TEST(DefaultSpread, AZeroToleranceCountsAsMissingAndIsRefused) {
   for (const std::string_view key : {"thermal_resistance_stator_ambient", "terminal_resistance", "no_load_current"}) {
     Motor motor = ecx_32();
-    base::ParameterValue& figure = motor.parameters.at(key);
-    figure.spread = base::Spread{base::Spread::Kind::tolerance, figure.value, figure.value, true};
+    base::ParameterValue& parameter = motor.parameters.at(key);
+    parameter.spread = base::Spread{base::Spread::Kind::tolerance, parameter.value, parameter.value, true};
     ASSERT_THAT(default_spreads(motor), SizeIs(1)) << key;
-    EXPECT_LT(with_default_spreads(motor).parameters.at(key).spread->low, figure.value);
+    EXPECT_LT(with_default_spreads(motor).parameters.at(key).spread->low, parameter.value);
     EXPECT_THAT(message_of_refusal(motor), AllOf(HasSubstr(".toml:"), HasSubstr("exact_values"), HasSubstr(key), HasSubstr("state that")));
   }
 }
 
-base::Spread of_percent(const base::ParameterValue& figure, double below_percent, double above_percent) {
-  return {base::Spread::Kind::range, figure.value * (1.0 - 0.01 * below_percent), figure.value * (1.0 + 0.01 * above_percent), true};
+base::Spread of_percent(const base::ParameterValue& parameter, double below_percent, double above_percent) {
+  return {base::Spread::Kind::range, parameter.value * (1.0 - 0.01 * below_percent), parameter.value * (1.0 + 0.01 * above_percent), true};
 }
 
 // A file states 0.001 % to avoid a larger spread, on both sides or on the side that makes motors hot.
@@ -138,8 +138,8 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
       const base::Spread usual = *with_default_spreads(missing).parameters.at(key).spread;
       for (const auto& [below_percent, above_percent] : {std::pair(1e-3, 1e-3), std::pair(40.0, 0.01), std::pair(0.5, 100.0)}) {
         Motor motor = missing;
-        base::ParameterValue& figure = motor.parameters.at(key);
-        figure.spread = of_percent(figure, below_percent, above_percent);
+        base::ParameterValue& parameter = motor.parameters.at(key);
+        parameter.spread = of_percent(parameter, below_percent, above_percent);
         EXPECT_THAT(message_of_refusal(motor),
                     AllOf(HasSubstr(".toml:"), HasSubstr("narrow_values"), HasSubstr(key), HasSubstr("state that")))
             << base::to_string(origin) << " " << below_percent;
@@ -152,39 +152,39 @@ TEST(DefaultSpread, ANarrowerSpreadThanItsOriginSupportsIsRefusedAndNotUsed) {
 
 TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   Motor motor = ecx_32();
-  base::ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
-  figure.origin = base::Origin::measured;
-  figure.spread = of_percent(figure, 0.02, 3.0);
+  base::ParameterValue& parameter = motor.parameters.at("thermal_resistance_stator_ambient");
+  parameter.origin = base::Origin::measured;
+  parameter.spread = of_percent(parameter, 0.02, 3.0);
   EXPECT_THAT(message_of_refusal(motor), HasSubstr("narrow_values")) << "the file records no fit";
   motor.fit.emplace().parameters = {"thermal_resistance_stator_ambient"};
   EXPECT_EQ(message_of_refusal(motor), "");
   const std::vector<DefaultSpread> found = default_spreads(motor);
   ASSERT_THAT(found, SizeIs(1));
-  EXPECT_NEAR(found[0].spread.low, 0.99 * figure.value, 1e-9 * figure.value);
-  EXPECT_NEAR(found[0].spread.high, 1.03 * figure.value, 1e-9 * figure.value);
-  figure.spread = of_percent(figure, 1.5, 1.5);
+  EXPECT_NEAR(found[0].spread.low, 0.99 * parameter.value, 1e-9 * parameter.value);
+  EXPECT_NEAR(found[0].spread.high, 1.03 * parameter.value, 1e-9 * parameter.value);
+  parameter.spread = of_percent(parameter, 1.5, 1.5);
   EXPECT_THAT(default_spreads(motor), IsEmpty());
 }
 
 TEST(DefaultSpread, AFileThatACalibrationWroteGetsNoNoteAboutIt) {
   Motor motor = ecx_32();
-  base::ParameterValue& figure = motor.parameters.at("thermal_resistance_stator_ambient");
-  figure.origin = base::Origin::measured;
-  figure.spread = of_percent(figure, 0.02, 3.0);
+  base::ParameterValue& parameter = motor.parameters.at("thermal_resistance_stator_ambient");
+  parameter.origin = base::Origin::measured;
+  parameter.spread = of_percent(parameter, 0.02, 3.0);
   const auto notes = [&] {
     const std::vector<LintFinding> all = lint(motor);
     return std::ranges::count(all, "narrow_values", &LintFinding::check);
   };
   EXPECT_EQ(notes(), 1) << "the user wrote it";
-  figure.source = "calibration";
+  parameter.source = "calibration";
   motor.fit.emplace().parameters = {"thermal_resistance_stator_ambient"};
   EXPECT_EQ(notes(), 0);
 }
 
 TEST(DefaultSpread, MissingOnesAreNoReasonToRefuse) {
   Motor motor = ecx_32();
-  for (auto& [key, figure] : motor.parameters) {
-    figure.spread.reset();
+  for (auto& [key, parameter] : motor.parameters) {
+    parameter.spread.reset();
   }
   EXPECT_EQ(message_of_refusal(motor), "");
   EXPECT_THAT(to_string(default_spreads(motor)), HasSubstr("thermal_resistance_stator_ambient -50 to +80 % (estimated)"));
@@ -200,9 +200,9 @@ TEST(DefaultSpread, ParametersOfEffectsStayWithinTheirDeclaration) {
   const auto add = [&motor](const thermal::EffectType& type) {
     MotorEffect effect{std::string(type.name), &type, {}, {}};
     for (const base::ParameterSpec& spec : type.parameters) {
-      base::ParameterValue figure;
-      figure.value = std::isfinite(spec.range.high) ? spec.range.high : std::max(1.0, spec.range.low);
-      effect.parameters.push_back(figure);
+      base::ParameterValue parameter;
+      parameter.value = std::isfinite(spec.range.high) ? spec.range.high : std::max(1.0, spec.range.low);
+      effect.parameters.push_back(parameter);
     }
     motor.effects.push_back(effect);
   };

@@ -61,9 +61,9 @@ TEST(MotorConventions, phase_values_are_two_in_series) {
   const Motor motor = motor_with("phase_to_star", "per_dc_ampere");
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_resistance_ohm, 1.0);
   EXPECT_DOUBLE_EQ(motor.nominal.terminal_inductance_H.value(), 0.4e-3);
-  const base::ParameterValue& figure = motor.parameters.at("terminal_resistance");
-  EXPECT_DOUBLE_EQ(figure.spread->low, 0.9);
-  EXPECT_DOUBLE_EQ(figure.spread->high, 1.1);
+  const base::ParameterValue& parameter = motor.parameters.at("terminal_resistance");
+  EXPECT_DOUBLE_EQ(parameter.spread->low, 0.9);
+  EXPECT_DOUBLE_EQ(parameter.spread->high, 1.1);
 }
 
 // Block commutation on a sinusoidal back-EMF of amplitude E between two terminals: the mean torque over the 60° around the crest is 3/π of

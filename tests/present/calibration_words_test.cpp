@@ -27,7 +27,9 @@ using testing::HasSubstr;
 TEST(WordsOfCalibration, Admission) {
   using namespace calibration;
   expect_words<LogProblem>({
-      {recording::PowerOppositeToBus{}, "power_in_W and bus_V × bus_A have opposite signs"},
+      {recording::PowerOppositeToBus{},
+       "power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = \"-\" in a mapping "
+       "(--map)"},
       {CurrentOutliers{900.0, 120.0, 302},
        "current_A reaches 900 A in line 302; at three times the nominal voltage this motor reaches 120 A, and less than 2 % of the rows "
        "exceed that: exclude outliers with valid = \"…\" in a mapping, or is it in milliamperes?"},
@@ -49,7 +51,9 @@ TEST(WordsOfCalibration, Admission) {
   EXPECT_THAT(words_of(std::vector<AdmissionNote>{OfOtherMotor{"run1", "a", "b"},
                                                   recording::SuspicionOfLog{"run1", recording::PowerOppositeToBus{}},
                                                   SensorLags{"run1", {"winding_C", "current_A", 3.0, 0.2}}}),
-              ElementsAre("run1 states that it is of the motor a, not of b", "run1: power_in_W and bus_V × bus_A have opposite signs",
+              ElementsAre("run1 states that it is of the motor a, not of b",
+                          "run1: power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = "
+                          "\"-\" in a mapping (--map)",
                           "run1: winding_C follows current_A 3 s ± 0.2 s late: its sensor lags, or a clock is off (clock_offset of a "
                           "mapping); the values fitted to the winding (heat capacity, time constant, resistance to the stator) are biased "
                           "by more than their intervals"));

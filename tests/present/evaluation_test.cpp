@@ -162,6 +162,7 @@ simulate::EvaluationAnswer answer_with(std::vector<select::MotorEvaluation> resu
                                     .closed_loop = {},
                                     .ranks = {},
                                     .changes = {}};
+  answer.robot.drive.current_limit_A = 4.0;  // some motors here are limited by it
   return answer;
 }
 

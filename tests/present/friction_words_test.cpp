@@ -20,7 +20,8 @@ using testing::HasSubstr;
 TEST(WordsOfFriction, Suspicions) {
   using namespace friction;
   expect_words<FrictionSuspicion>({
-      {recording::AngleSpansDegrees{"yaw_rad", 359.0}, "yaw_rad spans 359 rad: is it in degrees?"},
+      {recording::AngleSpansDegrees{"yaw_rad", 359.0},
+       "yaw_rad spans 359 rad: is it in degrees? If so, state unit = \"deg\" in a mapping (--map)"},
       {DirectionDiffers{90.2},
        "the direction of travel is 90° off the direction that follows from the wheels' speeds: are the wheels in another order than in the "
        "robot's file, or is an angle in degrees or in another frame?"},
@@ -43,7 +44,8 @@ TEST(WordsOfFriction, Suspicions) {
        "modulation in another unit?"},
   });
   EXPECT_THAT(words_of(std::vector<SuspicionOfTest>{{"run1", recording::PowerOppositeToBus{}}, {"", VoltageFallsWithSpeed{}}}),
-              ElementsAre("run1: power_in_W and bus_V × bus_A have opposite signs",
+              ElementsAre("run1: power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = "
+                          "\"-\" in a mapping (--map)",
                           "voltage falls as the wheels turn faster: does one of them have the wrong sign?"));
 }
 

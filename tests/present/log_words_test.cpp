@@ -21,34 +21,34 @@ TEST(WordsOfLogs, Suspicions) {
   using namespace recording;
   expect_words<Suspicion>({
       {CurrentTooLarge{"current_A", 8004.0},
-       "current_A reaches 8000 A: is it in milliamperes?; if so, state unit = \"mA\" in a mapping (--map)"},
+       "current_A reaches 8000 A: is it in milliamperes? If so, state unit = \"mA\" in a mapping (--map)"},
       {PowerDiffersFromBus{0.001},
-       "power_in_W is 0.001 times bus_V × bus_A: is one of them in another unit?; if so, state unit = \"…\" in a mapping (--map)"},
+       "power_in_W is 0.001 times bus_V × bus_A: is one of them in another unit? If so, state unit = \"…\" in a mapping (--map)"},
       {PowerOppositeToBus{},
-       "power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong?; if so, state sign = \"-\" in a mapping "
+       "power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = \"-\" in a mapping "
        "(--map)"},
       {TorqueOppositeToCurrent{},
-       "torque_Nm and current_A have opposite signs: is the sign of one of them wrong?; if so, state sign = \"-\" in a mapping (--map)"},
+       "torque_Nm and current_A have opposite signs: is the sign of one of them wrong? If so, state sign = \"-\" in a mapping (--map)"},
       {SpeedTooLarge{"speed_rad_per_s", 5000.0},
-       "speed_rad_per_s reaches 5000 rad/s: is it in rpm (524 rad/s) or degrees per second (87.3 rad/s)?; if so, state unit = \"rpm\" in a "
+       "speed_rad_per_s reaches 5000 rad/s: is it in rpm (524 rad/s) or degrees per second (87.3 rad/s)? If so, state unit = \"rpm\" in a "
        "mapping (--map)"},
       {ShaftPowerExceedsInput{7.64},
        "torque_Nm × speed_rad_per_s is 7.64 times power_in_W, more than the input: is the speed in rpm (÷ 9.55) or degrees per second (÷ "
-       "57.3)?; if so, state unit = \"rpm\" in a mapping (--map)"},
-      {AngleSpansDegrees{"yaw_rad", 359.0}, "yaw_rad spans 359 rad: is it in degrees?; if so, state unit = \"deg\" in a mapping (--map)"},
+       "57.3)? If so, state unit = \"rpm\" in a mapping (--map)"},
+      {AngleSpansDegrees{"yaw_rad", 359.0}, "yaw_rad spans 359 rad: is it in degrees? If so, state unit = \"deg\" in a mapping (--map)"},
       {WheelRowsFarApart{20.0},
-       "the speeds of wheels are 20 s apart: is the time in milliseconds?; if so, state unit = \"ms\" in a mapping (--map)"},
+       "the speeds of wheels are 20 s apart: is the time in milliseconds? If so, state unit = \"ms\" in a mapping (--map)"},
       {ModulationAboveOne{"wheel_modulation_ratio_1", 97.0},
-       "wheel_modulation_ratio_1 reaches 97: is it in percent or in counts of a timer? 1 is the whole battery voltage; if so, scale it "
+       "wheel_modulation_ratio_1 reaches 97: is it in percent or in counts of a timer? 1 is the whole battery voltage. If so, scale it "
        "with an expression in a mapping (--map)"},
       {VoltageTooLarge{"battery_V", 24000.0},
-       "battery_V reaches 24000 V: is it in millivolts?; if so, state unit = \"mV\" in a mapping (--map)"},
+       "battery_V reaches 24000 V: is it in millivolts? If so, state unit = \"mV\" in a mapping (--map)"},
       {LastsForDays{8.64e5, 1000.0, TimeUnit::milliseconds},
-       "the log lasts 10 days at 1000 s per row: is the time in milliseconds?; if so, state unit = \"ms\" in a mapping (--map)"},
+       "the log lasts 10 days at 1000 s per row: is the time in milliseconds? If so, state unit = \"ms\" in a mapping (--map)"},
       {LastsForDays{8.64e8, 1e6, TimeUnit::microseconds},
-       "the log lasts 10000 days at 1000000 s per row: is the time in microseconds?; if so, state unit = \"us\" in a mapping (--map)"},
+       "the log lasts 10000 days at 1000000 s per row: is the time in microseconds? If so, state unit = \"us\" in a mapping (--map)"},
       {FallsTooFast{"stator_C", 1.0 / 60.0, 10.0, 2.5, TimeUnit::minutes},
-       "the rows are 0.0167 s apart and stator_C falls by 10 K in 2.5 s: is the time in minutes?; if so, state unit = \"min\" in a mapping "
+       "the rows are 0.0167 s apart and stator_C falls by 10 K in 2.5 s: is the time in minutes? If so, state unit = \"min\" in a mapping "
        "(--map)"},
       {RespondsEarly{"winding_C", "current_A", -1.0, 0.2, true},
        "winding_C responds 1 s ± 0.2 s before current_A changes, so one of their clocks is off; in a mapping give current_A and all "
@@ -68,35 +68,35 @@ TEST(WordsOfLogs, Suspicions) {
        "current_A stays at exactly 3 A in 25 % of its rows: is the sensor saturated? If so, state saturates_high or saturates_low in a "
        "mapping (--map)"},
       {AmbientAboveMotor{"stator_C", 12.0},
-       "ambient_C is hotter than stator_C most of the time (by 12 K): are the channels swapped?; if so, swap their columns in a mapping "
+       "ambient_C is hotter than stator_C most of the time (by 12 K): are the channels swapped? If so, swap their columns in a mapping "
        "(--map)"},
       {FallsWhileHeated{"winding_C", "current_A"},
        "winding_C falls while current_A heats and rises while it rests: is the sign of the sensor wrong? If so, correct it with an "
        "expression in a mapping (--map)"},
       {StatorRespondsFaster{"current_A", 90.0, 30.0},
-       "stator_C responds to current_A faster than winding_C and varies more (90 K against 30 K): are the two swapped?; if so, swap their "
+       "stator_C responds to current_A faster than winding_C and varies more (90 K against 30 K): are the two swapped? If so, swap their "
        "columns in a mapping (--map)"},
       {StatorHotterAtRest{8.0},
-       "without heat, stator_C is hotter than winding_C (by 8 K) and falls by more: are the two swapped?; if so, swap their columns in a "
+       "without heat, stator_C is hotter than winding_C (by 8 K) and falls by more: are the two swapped? If so, swap their columns in a "
        "mapping (--map)"},
       {StatorWarmsFirst{"current_A", 30.0, 20.0},
        "at standstill current_A heats stator_C by 30 K while winding_C is 20 K cooler: are the two swapped, or is a sensor elsewhere?; if "
        "so, swap their columns in a mapping (--map)"},
       {StartsInOtherScale{"stator_C", 220.0, 22.0, TemperatureScale::tenths_of_degrees},
-       "stator_C starts at 220 °C: is it in tenths of degrees (22 °C)?; if so, divide it by 10 with an expression in a mapping (--map)"},
+       "stator_C starts at 220 °C: is it in tenths of degrees (22 °C)? If so, divide it by 10 with an expression in a mapping (--map)"},
       {StartsInOtherScale{"stator_C", 295.2, 22.06, TemperatureScale::kelvin},
-       "stator_C starts at 295.2 °C: is it in kelvin (22.1 °C)?; if so, state unit = \"K\" in a mapping (--map)"},
+       "stator_C starts at 295.2 °C: is it in kelvin (22.1 °C)? If so, state unit = \"K\" in a mapping (--map)"},
       {StartsInOtherScale{"ambient_C", 71.6, 22.0, TemperatureScale::fahrenheit},
-       "ambient_C starts at 71.6 °C: is it in degrees Fahrenheit (22 °C)?; if so, state unit = \"degF\" in a mapping (--map)"},
+       "ambient_C starts at 71.6 °C: is it in degrees Fahrenheit (22 °C)? If so, state unit = \"degF\" in a mapping (--map)"},
       {MotorStartsInFahrenheit{"winding_C", 71.6, 22.0, 21.0},
-       "winding_C and the motor's other temperatures start at 71.6 °C in air of 21 °C: are they in degrees Fahrenheit (22 °C)?; if so, "
+       "winding_C and the motor's other temperatures start at 71.6 °C in air of 21 °C: are they in degrees Fahrenheit (22 °C)? If so, "
        "state unit = \"degF\" in a mapping (--map)"},
       {MotorCoolsInFahrenheit{"winding_C", 71.6, 22.0, 21.0},
        "winding_C reaches a steady state of 71.6 °C without heat, in air of 21 °C: are the motor's temperatures in degrees Fahrenheit (22 "
-       "°C)?; if so, state unit = \"degF\" in a mapping (--map)"},
+       "°C)? If so, state unit = \"degF\" in a mapping (--map)"},
   });
   EXPECT_EQ(words_of(SuspicionOfLog{"run1", PowerOppositeToBus{}}),
-            "run1: power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong?; if so, state sign = \"-\" in a "
+            "run1: power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = \"-\" in a "
             "mapping (--map)");
 }
 

@@ -42,7 +42,7 @@ TEST(WordsOfFailures, FindingsOfLogs) {
   EXPECT_THAT(wrong.message(), EndsWith("or use --as-is if they are right"));
   ASSERT_EQ(wrong.diagnostics().size(), 1U);
   EXPECT_EQ(to_string(wrong.diagnostics()[0]),
-            "run1.csv: error: current_A reaches 8000 A: is it in milliamperes?; if so, state unit = \"mA\" in a mapping (--map)");
+            "run1.csv: error: current_A reaches 8000 A: is it in milliamperes? If so, state unit = \"mA\" in a mapping (--map)");
   const base::Failure plain(base::ExitCode::numerics_failed, "did not converge");
   EXPECT_STREQ(told(plain).what(), plain.what());
 }
@@ -111,7 +111,8 @@ TEST(WordsOfFailures, FindingsOfFriction) {
                                                 .suspicions = {{"run1", recording::PowerOppositeToBus{}}}}))
                 .message(),
             "nothing is identifiable from 3 steady legs on 1 heading: of wheel 1, it has too few steady legs\n"
-            "suspicious: run1: power_in_W and bus_V × bus_A have opposite signs");
+            "suspicious: run1: power_in_W and bus_V × bus_A have opposite signs: is the sign of one of them wrong? If so, state sign = "
+            "\"-\" in a mapping (--map)");
   EXPECT_EQ(told(friction::NothingIdentifiable({})).message(),
             "nothing is identifiable: in no interval do the wheels turn steadily; legs of one speed and direction must last a second or "
             "more");

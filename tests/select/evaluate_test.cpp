@@ -10,6 +10,7 @@
 #include "given_demand.h"
 #include "select/decision.h"
 #include "simple_motor.h"
+#include "support/seed_rate.h"
 #include "support/source_folder.h"
 
 namespace heatsoak::select {
@@ -208,7 +209,8 @@ TEST(Evaluate, nearer_limit_decides_margins) {
 
 TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
   const motor::Motor motor = motor_of_file("maxon_ecx_flat_32l_48v");
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  // The samples near the percentile need not peak in the same cell, so the band may stay some kelvins below the percentile of the peaks.
+  EXPECT_TRUE(holds_for_share(0.95, 20, [&](std::uint64_t seed) {
     const MotorEvaluation result = evaluate_one(motor, robot_of_file("roboteam_twente_v2024"), duty_of_file("paper_intermittent"),
                                                 {.samples = 100, .seed = seed, .with_curves = true, .with_bands = true});
     EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_C), result.winding_peak_C.nominal, 1e-3);
@@ -217,8 +219,8 @@ TEST(Curves, enclose_the_nominal_run_and_reach_its_peak) {
       EXPECT_LT(result.curves.winding_p05_C[i], result.curves.winding_p95_C[i]);
       EXPECT_LT(result.curves.stator_p05_C[i], result.curves.stator_p95_C[i]);
     }
-    EXPECT_NEAR(*std::ranges::max_element(result.curves.winding_p95_C), *result.winding_peak_C.p95, 8.0) << seed;
-  }
+    return std::abs(*std::ranges::max_element(result.curves.winding_p95_C) - *result.winding_peak_C.p95) <= 8.0;
+  }));
 }
 
 TEST(PaperCase, ecx_flat_32l_peaks_at_162_C_and_fails_by_its_winding) {

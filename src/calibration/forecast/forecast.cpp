@@ -17,6 +17,9 @@ namespace {
 
 constexpr std::size_t kRefitted = 4;
 constexpr int kMostExtensions = 4;
+// Shares of the recorded jobs in which a round of extensions takes place, first and after another one.
+constexpr double kFirstRound = 0.95;
+constexpr double kNextRound = 0.35;
 constexpr int kScreeningSteps = 8;
 constexpr int kPieceSteps = 12;
 /// Largest ratio by which the perturbed starting point differs from the file.
@@ -50,10 +53,13 @@ struct Candidate {
   double gain_nats = -std::numeric_limits<double>::infinity();
 };
 
-std::vector<base::JobPhase> work_after_extensions(double unit_s) {
-  return {{calibration_phases::kComparing, 1.0 * unit_s},
-          {calibration_phases::kLeavingOut, 1.8 * unit_s},
-          {calibration_phases::kPredicting, 0.4 * unit_s}};
+/// Returns `round` and those that may follow it: each follows the one before with the same probability. `begun`: rounds before it.
+std::vector<ExtensionRound> rounds_from(ExtensionRound round, int begun) {
+  std::vector<ExtensionRound> all;
+  for (; begun < kMostExtensions; ++begun, round.probability *= kNextRound) {
+    all.push_back(round);
+  }
+  return all;
 }
 
 class Search {
@@ -66,8 +72,9 @@ class Search {
   }
 
   Forecast run(std::span<const Eigen::VectorXd> hints) {
-    progress_.begin(calibration_phases::kWholeRuns);
-    out_.fit = best_of_starts(hints);
+    const CalibrationWork usual(runs_, runs_.size() > 1 ? runs_.size() : kBlocks, threads_);
+    FitCounter counter(progress_.begin(calibration_phases::kWholeRuns), usual.of_whole_runs(2 + hints.size()));
+    out_.fit = best_of_starts(hints, counter);
     if (!std::isfinite(out_.fit.cost_nats)) {
       out_.source = ForecastSource::file;
       out_.band = usual_band(runs_.front().time_s.back() - runs_.front().time_s.front());
@@ -76,13 +83,14 @@ class Search {
     base_.emplace(*model_);
     out_.pieces = pieces_of(*model_, out_.fit, runs_);
     const ForecastRules rules = of_piece();
-    score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules);
+    work_.emplace(runs_, out_.pieces.size(), threads_);
+    score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules, &counter);
     // Quarters of one run share its load: they score, but they choose neither a network nor a fit without priors.
     const bool are_runs = runs_.size() > 1;
-    for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain() && extend(); ++round) {
+    for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain(score_) && extend(round);
+         ++round) {
     }
-    progress_.expect(work_after_extensions(usual_s(runs_)));
-    progress_.begin(calibration_phases::kComparing);
+    progress_.expect(work_->after_whole_runs({}));
     if (out_.pieces.size() >= kLeastToCompare) {
       compare_with_rivals(are_runs);
     }
@@ -91,24 +99,19 @@ class Search {
   }
 
  private:
-  /// Declares a round of extensions, after which another may follow. A later round has more candidates.
-  void expect_extensions() const {
-    constexpr double kNextRound = 0.4;
-    const double unit_s = usual_s(runs_);
-    const std::size_t accepted = out_.accepted.size();
-    std::vector<base::JobPhase> phases{{calibration_phases::kExtending, (accepted == 0 ? 4.0 : 8.0) * unit_s}};
-    if (accepted + 1 < static_cast<std::size_t>(kMostExtensions)) {
-      phases.push_back({calibration_phases::kExtending, 8.0 * unit_s, kNextRound});
-    }
-    std::ranges::move(work_after_extensions(unit_s), std::back_inserter(phases));
-    progress_.expect(std::move(phases));
-  }
-
   [[nodiscard]] ForecastRules rules() const { return {.threads = threads_}; }
   /// Fewer steps: a fit to the other pieces starts near its optimum.
   [[nodiscard]] ForecastRules of_piece() const { return {.rounds = 2, .steps = kPieceSteps, .threads = threads_}; }
 
-  [[nodiscard]] ForecastFit best_of_starts(std::span<const Eigen::VectorXd> hints) const {
+  [[nodiscard]] ForecastFit fitted_to_all(const ForecastModel& model, const Eigen::VectorXd& theta, ForecastRules rules,
+                                          FitCounter& counter) const {
+    rules.on_simulation = counter.of_fit_to_all();
+    ForecastFit fit = fit_forecast(model, runs_, {}, theta, rules);
+    counter.fitted_all();
+    return fit;
+  }
+
+  [[nodiscard]] ForecastFit best_of_starts(std::span<const Eigen::VectorXd> hints, FitCounter& counter) const {
     std::vector<Eigen::VectorXd> starts{model_->start()};
     starts.insert(starts.end(), hints.begin(), hints.end());
     base::Random random(1, 0);
@@ -120,7 +123,7 @@ class Search {
     ForecastFit best;
     best.cost_nats = std::numeric_limits<double>::infinity();
     for (const Eigen::VectorXd& start : starts) {
-      ForecastFit fit = fit_forecast(*model_, runs_, {}, start, rules());
+      ForecastFit fit = fitted_to_all(*model_, start, rules(), counter);
       const double weight = std::min(best.weight, fit.weight);
       if (!std::isfinite(best.cost_nats) || (std::isfinite(fit.cost_nats) && cost_at_weight(fit, weight) < cost_at_weight(best, weight))) {
         best = std::move(fit);
@@ -141,8 +144,8 @@ class Search {
     return prior_nats + weight * count * std::log(fit.error_K);
   }
 
-  /// False if the score is already as good as that of a network whose error is the sensors' noise.
-  [[nodiscard]] bool could_gain() const {
+  /// False if a score is already as good as that of a network whose error is the sensors' noise.
+  [[nodiscard]] bool could_gain(const PieceScore& score) const {
     double least_nats = 0.0;
     double count = 0.0;
     for (const Piece& piece : out_.pieces) {
@@ -151,33 +154,37 @@ class Search {
         count += 1.0;
       }
     }
-    return score_.score_nats > least_nats / count + kLeastGain_nats;
+    return score.score_nats > least_nats / count + kLeastGain_nats;
   }
 
   /// Accepts the extension that predicts the left-out pieces best, if the gain exceeds the penalty for its parameters.
-  bool extend() {
-    expect_extensions();
-    const base::Progress progress = progress_.begin(calibration_phases::kExtending);
+  bool extend(int round) {
     const std::vector<Extension> all = extensions_for(out_.setup, *model_, out_.fit.theta, runs_);
-    std::vector<Candidate> candidates = screened(all);
+    const std::size_t refitted = std::min(kRefitted, all.size());
+    const ExtensionRound next{all.size(), refitted, kNextRound};
+    std::vector<ExtensionRound> rounds = rounds_from(next, round + 1);
+    rounds.insert(rounds.begin(), {all.size(), refitted, 1.0});
+    progress_.expect(work_->after_whole_runs(rounds));
+    std::vector<Candidate> candidates = screened(all, progress_.begin(calibration_phases::kScreening));
+    FitCounter counter(progress_.begin(calibration_phases::kExtending), work_->of_extending(refitted));
     Candidate* best = nullptr;
     std::optional<PieceScore> best_score;
     double best_nats = 0.0;
-    const std::size_t refitted = std::min(kRefitted, candidates.size());
     for (std::size_t i = 0; i < refitted; ++i) {
-      if (progress) {
-        progress(i + 1, refitted + 1);
-      }
       Candidate& each = candidates[i];
-      each.fit = fit_forecast(*each.model, runs_, {}, each.fit.theta, rules());
+      each.fit = fitted_to_all(*each.model, each.fit.theta, rules(), counter);
       const ForecastRules rules = of_piece();
-      PieceScore score = score_pieces(*each.model, runs_, out_.pieces, each.fit.theta, &rules);
+      PieceScore score = score_pieces(*each.model, runs_, out_.pieces, each.fit.theta, &rules, &counter);
       const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
       if (gain_nats > best_nats && matters(score)) {
         best = &each;
         best_nats = gain_nats;
         best_score = std::move(score);
       }
+      // Whether another round follows is known as soon as one candidate is good enough; each one that is not makes it less probable.
+      const double follows =
+          best ? (could_gain(*best_score) ? 1.0 : 0.0) : kNextRound * static_cast<double>(refitted - 1 - i) / static_cast<double>(refitted);
+      progress_.expect(work_->after_whole_runs(rounds_from({all.size(), refitted, follows}, round + 1)));
     }
     if (!best) {
       return false;
@@ -201,11 +208,11 @@ class Search {
   }
 
   /// Makes one short fit of each extension with the error and weight of the present fit. Returns the candidates, best first.
-  std::vector<Candidate> screened(const std::vector<Extension>& all) const {
+  std::vector<Candidate> screened(const std::vector<Extension>& all, const base::Progress& progress) const {
     std::vector<Candidate> candidates(all.size());
-    ForecastRules rules{
-        .rounds = 1, .steps = kScreeningSteps, .held_error_K = out_.fit.error_K, .held_weight = out_.fit.weight, .threads = 1};
-    base::in_parallel(all.size(), threads_, [&](std::size_t i) {
+    const ForecastErrorModel held{out_.fit.error_K, out_.fit.weight};
+    const ForecastRules rules{.rounds = 1, .steps = kScreeningSteps, .held = held, .threads = 1};
+    base::in_parallel(all.size(), threads_, 0, all.size(), progress, [&](std::size_t i) {
       Candidate& each = candidates[i];
       each.extension = &all[i];
       each.setup = with_extension(out_.setup, all[i]);
@@ -221,10 +228,11 @@ class Search {
   void compare_with_rivals(bool chooses) {
     const ForecastRules ordinary{
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
-    const ForecastFit plain = fit_forecast(*base_, runs_, {}, base_->start(), ordinary);
-    const ForecastFit near = fit_forecast(*base_, runs_, {}, carried_over(*model_, out_.fit.theta, *base_), ordinary);
+    FitCounter counter(progress_.begin(calibration_phases::kComparing), work_->of_comparing());
+    const ForecastFit plain = fitted_to_all(*base_, base_->start(), ordinary, counter);
+    const ForecastFit near = fitted_to_all(*base_, carried_over(*model_, out_.fit.theta, *base_), ordinary, counter);
     const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;
-    const PieceScore of_plain = score_pieces(*base_, runs_, out_.pieces, best_plain.theta, &ordinary);
+    const PieceScore of_plain = score_pieces(*base_, runs_, out_.pieces, best_plain.theta, &ordinary, &counter);
     const PieceScore of_file = score_pieces(*base_, runs_, out_.pieces, base_->start(), nullptr);
     const auto add = [&](ForecastSource source, const PieceScore& left_out, const ForecastModel& model, const Eigen::VectorXd& theta) {
       out_.rivals.push_back(rival_score(source, left_out, score_pieces(model, runs_, out_.pieces, theta, nullptr), runs_));
@@ -277,6 +285,7 @@ class Search {
   const base::JobProgress& progress_;
   std::optional<ForecastModel> model_, base_;
   ForecastSetup base_setup_;
+  std::optional<CalibrationWork> work_;
   PieceScore score_;
   Forecast out_;
 };
@@ -301,28 +310,13 @@ RivalScore rival_score(ForecastSource source, const PieceScore& left_out, const 
   return rival;
 }
 
-double usual_s(std::span<const estimation::MeasuredRun> runs) {
-  constexpr double kRow_s = 1.4e-4;
-  double rows = 0.0;
-  for (const estimation::MeasuredRun& run : runs) {
-    rows += static_cast<double>(run.time_s.size());
-  }
-  return kRow_s * rows;
-}
-
-std::vector<base::JobPhase> calibration_work(std::span<const estimation::MeasuredRun> runs) {
-  const double unit_s = usual_s(runs);
-  std::vector<base::JobPhase> phases{{calibration_phases::kFitting, unit_s}};
-  if (std::ranges::any_of(runs, estimation::may_turn_within_rows)) {
-    phases.push_back({calibration_phases::kFitting, unit_s});
-  }
-  phases.push_back({calibration_phases::kIntervals, 0.1 * unit_s});
-  phases.push_back({calibration_phases::kWholeRuns, 0.7 * unit_s});
-  if (runs.size() > 1) {
-    phases.push_back({calibration_phases::kExtending, 7.0 * unit_s});
-  }
-  std::ranges::move(work_after_extensions(unit_s), std::back_inserter(phases));
-  return phases;
+std::vector<base::JobPhase> calibration_work(std::span<const estimation::MeasuredRun> runs, int threads) {
+  constexpr std::size_t kUsualCandidates = 12;
+  const bool are_runs = runs.size() > 1;
+  const std::vector<ExtensionRound> rounds =
+      runs.size() >= kLeastPieces ? rounds_from({kUsualCandidates, kRefitted, kFirstRound}, 0) : std::vector<ExtensionRound>();
+  return CalibrationWork(runs, are_runs ? runs.size() : kBlocks, threads)
+      .all(std::ranges::any_of(runs, estimation::may_turn_within_rows), rounds);
 }
 
 Forecast forecast_of(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, std::span<const Eigen::VectorXd> hints,

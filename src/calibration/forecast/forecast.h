@@ -7,6 +7,7 @@
 #include "base/job_progress.h"
 #include "calibration/forecast/band.h"
 #include "calibration/forecast/forecast_setup.h"
+#include "calibration/forecast/forecast_work.h"
 
 namespace heatsoak::calibration {
 
@@ -49,21 +50,8 @@ RivalScore rival_score(ForecastSource source, const PieceScore& left_out, const 
 /// Decrease of the score per parameter from which one model counts as better: 5 % of the RMS error.
 inline constexpr double kLeastGain_nats = 0.05;
 
-/// Names of the phases of a calibration, for its progress.
-namespace calibration_phases {
-inline const std::string kFitting = "fitting the response";
-inline const std::string kIntervals = "computing intervals";
-inline const std::string kWholeRuns = "fitting whole runs";
-inline const std::string kExtending = "testing extensions of the model";
-inline const std::string kComparing = "comparing the fits";
-inline const std::string kLeavingOut = "testing the fit on left-out runs";
-inline const std::string kPredicting = "predicting the runs";
-}  // namespace calibration_phases
-
-/// Returns the usual duration of one fit of the response to these runs, in s on two cores.
-double usual_s(std::span<const estimation::MeasuredRun> runs);
-/// Returns the phases of a calibration; more kExtending may follow.
-std::vector<base::JobPhase> calibration_work(std::span<const estimation::MeasuredRun> runs);
+/// Returns the phases of a calibration. `threads`: 0 for all cores.
+std::vector<base::JobPhase> calibration_work(std::span<const estimation::MeasuredRun> runs, int threads);
 
 /// Finds the best forecast model. `hints` are additional starting points in θ of the setup's model. Deterministic.
 Forecast forecast_of(ForecastSetup setup, std::span<const estimation::MeasuredRun> runs, std::span<const Eigen::VectorXd> hints,

@@ -118,13 +118,16 @@ class Fitting {
       return false;
     }
     terms_ = std::move(terms);
+    if (rules_.on_simulation) {
+      rules_.on_simulation();
+    }
     return true;
   }
 
   void set_error(bool is_tempered) {
-    if (rules_.held_error_K > 0.0) {
-      out_.error_K = rules_.held_error_K;
-      out_.weight = rules_.held_weight;
+    if (rules_.held) {
+      out_.error_K = rules_.held->error_K;
+      out_.weight = rules_.held->weight;
       return;
     }
     double squares_K2 = 0.0;

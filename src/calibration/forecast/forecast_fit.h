@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +15,12 @@ namespace heatsoak::calibration {
 /// Rows of a run that a fit uses: nonzero if row (sample · sensors + sensor) counts. Empty: all rows.
 using RowMask = std::vector<char>;
 
+/// Statistics of the errors that the cost of a fit assumes.
+struct ForecastErrorModel {
+  double error_K = 0.0;  ///< RMS error, above 0
+  double weight = 1.0;   ///< independent samples per sample, 0 to 1
+};
+
 struct ForecastRules {
   /// true: since the errors of a run are correlated, N samples count as the number of independent ones (initial positive sequence of Geyer
   /// 1992, about zero). false: ordinary least squares, in which the priors are negligible.
@@ -20,9 +28,10 @@ struct ForecastRules {
   bool has_heat_factors = true;  ///< fits one heat factor per run if there are two runs or more
   int rounds = 3;                ///< number of fits, each followed by an update of error and weight
   int steps = 25;                ///< Levenberg-Marquardt steps per round
-  double held_error_K = 0.0;     ///< if above 0, error and weight are fixed, so that costs can be compared
-  double held_weight = 1.0;
-  int threads = 0;  ///< 0: all cores; the result does not depend on it
+  /// Error and weight if they are fixed, so that costs can be compared; empty: estimated in each round.
+  std::optional<ForecastErrorModel> held = {};
+  int threads = 0;                           ///< 0: all cores; the result does not depend on it
+  std::function<void()> on_simulation = {};  ///< called after each simulation of all runs; may be empty
 };
 
 struct ForecastFit {

@@ -10,7 +10,6 @@
 namespace heatsoak::calibration {
 namespace {
 
-constexpr std::size_t kBlocks = 4;
 constexpr double kExcited_share = 0.25;
 
 /// Index of the winding's sensor, or 0 if there is none.
@@ -131,19 +130,30 @@ std::vector<estimation::MeasuredRun> runs_without(std::span<const estimation::Me
 }
 
 PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
-                        const Eigen::VectorXd& theta, const ForecastRules* rules) {
-  return score_pieces(model, runs, pieces, [&](const Piece& piece) {
-    return rules ? fitted_without(model, runs, piece, theta, *rules) : unfitted(model, theta);
-  });
+                        const Eigen::VectorXd& theta, const ForecastRules* rules, FitCounter* counter) {
+  if (rules == nullptr) {
+    return score_pieces(model, runs, pieces, [&](const Piece&) { return unfitted(model, theta); });
+  }
+  ForecastRules counted = *rules;
+  std::function<void()> after_piece;
+  if (counter != nullptr) {
+    counted.on_simulation = counter->of_fit_without_piece();
+    after_piece = [counter] { counter->fitted_without_piece(); };
+  }
+  return score_pieces(
+      model, runs, pieces, [&](const Piece& piece) { return fitted_without(model, runs, piece, theta, counted); }, after_piece);
 }
 
 PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
-                        const FitWithout& fit_without) {
+                        const FitWithout& fit_without, const std::function<void()>& after_piece) {
   PieceScore score;
   double count = 0.0;
   for (const Piece& piece : pieces) {
     try {
       score.pieces.push_back(predicted(model, runs, piece, fit_without(piece)));
+      if (after_piece) {
+        after_piece();
+      }
     } catch (const base::Failure& failure) {
       if (failure.code() != base::ExitCode::numerics_failed && failure.code() != base::ExitCode::cannot_answer) {
         throw;

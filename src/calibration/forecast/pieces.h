@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/forecast/forecast_fit.h"
+#include "calibration/forecast/forecast_work.h"
 
 namespace heatsoak::calibration {
 
@@ -19,6 +20,8 @@ struct Piece {
 /// Returns the pieces: all runs, or four blocks of a single run. A piece counts only if the predicted winding temperature varies in it by
 /// at least a quarter of its range over all runs.
 std::vector<Piece> pieces_of(const ForecastModel& model, const ForecastFit& base, std::span<const estimation::MeasuredRun> runs);
+/// Number of blocks of a single run.
+inline constexpr std::size_t kBlocks = 4;
 /// Smallest number of pieces that can select a network, and that can compare fits of the same network.
 inline constexpr std::size_t kLeastPieces = 3;
 inline constexpr std::size_t kLeastToCompare = 2;
@@ -52,12 +55,14 @@ struct PieceScore {
 /// (numerics_failed or cannot_answer) if there are none.
 using FitWithout = std::function<ForecastFit(const Piece& piece)>;
 
-/// Scores the prediction of each piece. The score is infinite if a fit or a simulation fails.
+/// Scores the prediction of each piece. The score is infinite if a fit or a simulation fails. `after_piece` is called
+/// for each one; it may be empty.
 PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
-                        const FitWithout& fit_without);
+                        const FitWithout& fit_without, const std::function<void()>& after_piece = {});
 /// Fits the forecast model without each piece, starting at `theta`. If `rules` is null, nothing is fitted and the parameters are `theta`.
+/// `counter`, if given, counts the fits.
 PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, std::span<const Piece> pieces,
-                        const Eigen::VectorXd& theta, const ForecastRules* rules);
+                        const Eigen::VectorXd& theta, const ForecastRules* rules, FitCounter* counter = nullptr);
 
 /// Returns the runs without the piece: without its run, or with its samples not measured.
 std::vector<estimation::MeasuredRun> runs_without(std::span<const estimation::MeasuredRun> runs, const Piece& piece);

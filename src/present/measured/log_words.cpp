@@ -17,7 +17,7 @@ using base::significant;
 
 /// Advice for a column in another unit, or without the unit if it is not known.
 std::string if_unit(std::string_view unit = "") {
-  return fmt::format("; if so, state unit = {} in a mapping (--map)", unit.empty() ? "\"…\"" : fmt::format("\"{}\"", unit));
+  return fmt::format(" If so, state unit = {} in a mapping (--map)", unit.empty() ? "\"…\"" : fmt::format("\"{}\"", unit));
 }
 
 std::string_view unit_of(recording::TimeUnit unit) {
@@ -34,8 +34,8 @@ std::string_view unit_of(recording::TimeUnit unit) {
   return "h";
 }
 
-constexpr std::string_view kIfSign = "; if so, state sign = \"-\" in a mapping (--map)";
-constexpr std::string_view kIfSwapped = "; if so, swap their columns in a mapping (--map)";
+constexpr std::string_view kIfSign = " If so, state sign = \"-\" in a mapping (--map)";
+constexpr std::string_view kIfSwapped = " If so, swap their columns in a mapping (--map)";
 
 std::string say(const recording::CurrentTooLarge& of) {
   return fmt::format("{} reaches {} A: is it in milliamperes?{}", of.channel, significant(of.top_A, 3), if_unit("mA"));
@@ -77,7 +77,7 @@ std::string say(const recording::WheelRowsFarApart& of) {
 
 std::string say(const recording::ModulationAboveOne& of) {
   return fmt::format(
-      "{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage; if so, scale it with an "
+      "{} reaches {}: is it in percent or in counts of a timer? 1 is the whole battery voltage. If so, scale it with an "
       "expression in a mapping (--map)",
       of.channel, significant(of.top_ratio, 3));
 }
@@ -172,7 +172,7 @@ std::string say(const recording::StartsInOtherScale& of) {
   const ScaleWords scale = scale_words(of.suspected);
   return fmt::format("{} starts at {} °C: is it in {} ({} °C)?{}", of.channel, significant(of.start_C, scale.digits), scale.name,
                      significant(of.converted_C, 3),
-                     scale.unit.empty() ? "; if so, divide it by 10 with an expression in a mapping (--map)" : if_unit(scale.unit));
+                     scale.unit.empty() ? " If so, divide it by 10 with an expression in a mapping (--map)" : if_unit(scale.unit));
 }
 
 std::string say(const recording::MotorStartsInFahrenheit& of) {

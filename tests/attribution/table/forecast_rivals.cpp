@@ -48,23 +48,23 @@ motor::Motor sheet_of(const MotorMake& make, std::uint64_t seed) {
   std::string text =
       "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
       "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
-  const auto figure = [&](const char* key, double value, const char* unit, const char* spread) {
+  const auto put = [&](const char* key, double value, const char* unit, const char* spread) {
     text += fmt::format("{} = {{ value = \"{:.6g}{}{}\", origin = \"datasheet\", source = \"s\"{} }}\n", key, value, *unit ? " " : "", unit,
                         spread);
   };
   constexpr const char* kQuarter = ", tolerance = \"25 %\"";
-  figure("nominal_voltage", 24.0, "V", "");
-  figure("terminal_resistance", make.resistance_25C_ohm, "ohm", ", tolerance = \"10 %\"");
-  figure("torque_constant", kTorque_Nm_per_A, "N m/A", "");
-  figure("no_load_current", kNoLoad_A, "A", ", tolerance = \"30 %\"");
-  figure("temperature_coefficient", make.copper_per_K, "1/K", "");
-  figure("winding_limit", 155.0, "degC", "");
+  put("nominal_voltage", 24.0, "V", "");
+  put("terminal_resistance", make.resistance_25C_ohm, "ohm", ", tolerance = \"10 %\"");
+  put("torque_constant", kTorque_Nm_per_A, "N m/A", "");
+  put("no_load_current", kNoLoad_A, "A", ", tolerance = \"30 %\"");
+  put("temperature_coefficient", make.copper_per_K, "1/K", "");
+  put("winding_limit", 155.0, "degC", "");
   const double across = off(make.copper_to_iron_K_per_W);
   const double out = off(make.iron_to_air_K_per_W);
-  figure("thermal_resistance_winding_stator", across, "K/W", kQuarter);
-  figure("thermal_resistance_stator_ambient", out, "K/W", kQuarter);
-  figure("thermal_time_constant_winding", off(make.copper_capacity_J_per_K) * across, "s", kQuarter);
-  figure("thermal_time_constant_stator", off(make.iron_capacity_J_per_K) * out, "s", kQuarter);
+  put("thermal_resistance_winding_stator", across, "K/W", kQuarter);
+  put("thermal_resistance_stator_ambient", out, "K/W", kQuarter);
+  put("thermal_time_constant_winding", off(make.copper_capacity_J_per_K) * across, "s", kQuarter);
+  put("thermal_time_constant_stator", off(make.iron_capacity_J_per_K) * out, "s", kQuarter);
   const std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("heatsoak_rivals_{}.toml", seed);
   std::ofstream(path) << text;
   motor::Motor motor = motor::read_motor(path);
@@ -166,8 +166,7 @@ void summarise(const std::vector<Result>& results, int runs) {
 int run(const StudyWords& words) {
   const std::uint64_t first = words.whole(0, "FIRST_SEED", 0, 1);
   const std::uint64_t seeds = words.whole(1, "SEEDS", 1, 1);
-  const std::vector<int> run_counts =
-      words.has(2) ? std::vector{static_cast<int>(words.whole(2, "RUNS", 1, 1, 3))} : std::vector{1, 2, 3};
+  const std::vector<int> run_counts = words.has(2) ? std::vector{static_cast<int>(words.whole(2, "RUNS", 1, 1, 3))} : std::vector{1, 2, 3};
   struct Task {
     std::string name;
     int runs;
@@ -216,6 +215,4 @@ int run(const StudyWords& words) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  return run_study(argc, argv, "usage: heatsoak_forecast_rivals [FIRST_SEED [SEEDS [RUNS]]]\n", 3, run);
-}
+int main(int argc, char** argv) { return run_study(argc, argv, "usage: heatsoak_forecast_rivals [FIRST_SEED [SEEDS [RUNS]]]\n", 3, run); }
