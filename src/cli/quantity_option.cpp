@@ -40,9 +40,15 @@ CLI::Option* add_quantity_to(CLI::App& app, const std::string& flag, Value& valu
     }
     const double given = without_rounding(parsed.value, spec.range);
     if (!spec.range.contains(given)) {
+      base::Range shown = spec.range;
+      const bool is_percentage = spec.is_share() && text.ends_with('%');
+      if (is_percentage) {
+        shown.low *= 100.0;
+        shown.high *= 100.0;
+      }
       throw CLI::ValidationError(
           flag, fmt::format("{} is out of range; expected {}", bare && !spec.unit.empty() ? fmt::format("{} {}", text, spec.unit) : text,
-                            base::to_string(spec.range, spec.unit)));
+                            base::to_string(shown, is_percentage ? "%" : spec.unit)));
     }
     value = given;
   };

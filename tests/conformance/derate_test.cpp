@@ -51,6 +51,15 @@ conductance = { value = "0.1 W/K", origin = "estimated", derivation = "a test" }
   EXPECT_GT(bytes(fine), 80U);
 }
 
+TEST(DerateCommand, StatesTheRangeInTheUnitOfTheOption) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const char* error) {
+    return run(kDerateEcx + Words{"--motor", "maxon_ecx_flat_32l_48v", "--out", "guard.h", "--error", error}, here(folder)).err;
+  };
+  EXPECT_THAT(refusal("90%"), HasSubstr("expected 0.2 % to 50 %"));
+  EXPECT_THAT(refusal("0.9"), HasSubstr("expected 0.002 to 0.5"));
+}
+
 // <dcmotor> has one thermal resistance and no loss at speed. That is unsafe, so it is printed even with --quiet.
 TEST(DerateCommand, StatesTheHeatThatAFormatOmits) {
   const TemporaryFolder folder;
