@@ -80,7 +80,7 @@ TEST(WordsOfLogs, Suspicions) {
        "without heat, stator_C is hotter than winding_C (by 8 K) and falls by more: are the two swapped? If so, swap their columns in a "
        "mapping (--map)"},
       {StatorWarmsFirst{"current_A", 30.0, 20.0},
-       "at standstill current_A heats stator_C by 30 K while winding_C is 20 K cooler: are the two swapped, or is a sensor elsewhere?; if "
+       "at standstill current_A heats stator_C by 30 K while winding_C is 20 K cooler: are the two swapped, or is a sensor elsewhere? If "
        "so, swap their columns in a mapping (--map)"},
       {StartsInOtherScale{"stator_C", 220.0, 22.0, TemperatureScale::tenths_of_degrees},
        "stator_C starts at 220 °C: is it in tenths of degrees (22 °C)? If so, divide it by 10 with an expression in a mapping (--map)"},
