@@ -65,8 +65,13 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// Formats a diagnostic like a line of stderr.
 std::string line_of(const json& diagnostic) {
-  return base::to_string(base::Diagnostic{
-      {diagnostic.at("file"), diagnostic.at("line"), diagnostic.at("column")}, diagnostic.at("key"), diagnostic.at("message")});
+  // In JSON, 0 stands for the file as a whole.
+  const auto number = [&](const char* key) {
+    const int value = diagnostic.at(key);
+    return value > 0 ? std::optional(value) : std::nullopt;
+  };
+  return base::to_string(
+      base::Diagnostic{{diagnostic.at("file"), number("line"), number("column")}, diagnostic.at("key"), diagnostic.at("message")});
 }
 
 std::vector<std::string> lines_of(const json& error) {
