@@ -80,6 +80,15 @@ std::string complaint(const Command& command, Group group) {
   return {};
 }
 
+/// Returns the names in the value of an option. `evaluate` takes several motors, or all; a file whose name contains commas is one.
+std::vector<std::string> names_in(const std::string& value) {
+  std::error_code unreadable;
+  if (value.empty() || value == "all") {
+    return {};
+  }
+  return std::filesystem::exists(value, unreadable) ? std::vector{value} : CLI::detail::split(value, ',');
+}
+
 /// Returns a complaint about each motor, robot and duty that has no file, so that it is reported together with other mistakes.
 std::vector<std::string> unknown_ids(const CLI::App& verb) {
   const auto value_of = [&verb](const char* name) {
@@ -92,11 +101,12 @@ std::vector<std::string> unknown_ids(const CLI::App& verb) {
     for (const auto& [option, kind, folder] :
          {std::tuple("--motor", "motor", folders.motors), std::tuple("--robot", "robot", folders.robots),
           std::tuple("--duty", "duty", folders.duties)}) {
-      const std::string name = value_of(option);
-      try {
-        name.empty() ? std::filesystem::path() : input::file_of(folder, kind, name);
-      } catch (const base::Failure& failure) {
-        complaints.emplace_back(failure.what());
+      for (const std::string& name : names_in(value_of(option))) {
+        try {
+          input::file_of(folder, kind, name);
+        } catch (const base::Failure& failure) {
+          complaints.emplace_back(failure.what());
+        }
       }
     }
   } catch (const base::Failure&) {

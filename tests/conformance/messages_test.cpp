@@ -44,6 +44,12 @@ TEST(AllAtOnce, wrong_ids_beside_wrong_options) {
       run({"steady", "--motor", "maxon_ec45_flat_70w_24", "--current-on", "6V", "--time-on", "1s", "--time-off", "1s"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, AllOf(HasSubstr("no motor 'maxon_ec45_flat_70w_24'"), HasSubstr("--current-on")));
+  const auto evaluated = [](const char* motors) {
+    return run({"evaluate", "--robot", "tigers_v2020", "--duty", "paper_intermittent", "--motors", motors, "--plot", "x.jpg"}).err;
+  };
+  EXPECT_THAT(evaluated("maxon_dcx19s_24v,foo"), AllOf(HasSubstr("no motor 'foo'"), HasSubstr("x.jpg")));
+  EXPECT_THAT(evaluated("maxon_dcx19s_24v,maxon_ecx_flat_32l_48v"), Not(HasSubstr("no motor")));
+  EXPECT_THAT(evaluated("all"), Not(HasSubstr("no motor")));
 }
 
 // Contradicting values of a robot are refused by every verb that computes with them, at the same place.

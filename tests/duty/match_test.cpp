@@ -436,7 +436,16 @@ TEST(Match, a_keeper_works_less_than_an_attacker) {
 TEST(Match, a_robot_without_values_for_motion_is_refused_by_name) {
   robot::Robot robot = twente();
   robot.body.yaw_inertia_kg_m2.reset();
-  EXPECT_THROW(play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited), base::Failure);
+  robot.limits.jerk_m_per_s3.reset();
+  robot.friction.wheel_torque_Nm.reset();
+  try {
+    play_match(division_a(), division_a().nominal(), robot, 1, Planner::jerk_limited);
+    FAIL() << "is not refused";
+  } catch (const base::Failure& failure) {
+    std::vector<std::string> keys;
+    std::ranges::transform(failure.diagnostics(), std::back_inserter(keys), &base::Diagnostic::key);
+    EXPECT_THAT(keys, testing::UnorderedElementsAre("body.yaw_inertia", "limits.jerk", "friction.wheel_torque"));
+  }
 }
 
 TEST(Match, limits_that_the_planner_cannot_hold_are_said_in_words) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -114,6 +115,13 @@ class IdealTracking final : public Follower {
 
 enum class Keep { every_wheel, hardest_wheel };
 
+/// Returns the robot. Throws Failure (bad_input) that lists all values which a match needs and the robot lacks.
+const robot::Robot& complete(const robot::Robot& robot) {
+  constexpr std::array<std::string_view, 5> kTables{"body", "wheels", "friction", "traction", "limits"};
+  robot::require_parameters(robot, kTables);
+  return robot;
+}
+
 class Match {
  public:
   Match(const MatchInputs& inputs, const MatchValues& values, const robot::Robot& robot, std::uint64_t seed, Planner planner, double bin_s,
@@ -124,7 +132,7 @@ class Match {
         random_(seed, 0),
         game_(generate_game(inputs.division, inputs.overtime, values, random_)),
         behaviour_(inputs, values, random_),
-        body_(robot::make_body(robot, without_rotor())),
+        body_(robot::make_body(complete(robot), without_rotor())),
         motion_(ideal_tracking(robot, values.aggressiveness, planner)),
         observer_(observer),
         steps_(steps_of_thread()) {
