@@ -17,6 +17,7 @@ inline constexpr double kSpeedFadeOut_ratio = 1.1;
 struct TableBound {
   /// Above CurrentTable::straight_below_A the table lies below the exact current by at most this share of it; never above it. From 0 to 1.
   double shortfall_ratio = 0.0;
+  bool is_limited_by_size = false;  ///< the permitted size is too small for the target at the grid points that the search may choose
   // Upper bounds of the slope of the allowed current with respect to one quantity, computed from the table's own segments.
   double winding_slope_A_per_K = 0.0;
   double stator_slope_A_per_K = 0.0;

@@ -241,6 +241,7 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   std::optional<CurrentTable> best;
   for (int i = 0; i < kMostTries; ++i, grid_goal *= kBetter) {
     place_heats(table, barrier, rules, {grid_goal, goal.most_bytes});
+    table.bound.is_limited_by_size = table.bound.shortfall_ratio > grid_goal;
     const std::vector<CheckPoint> points = check_points(table, rules);
     check_table(table, barrier, points);
     round_down(table);

@@ -83,14 +83,13 @@ void add_table_notes(Document& document, const derate::Derating& derating) {
   const derate::TableBound& bound = derating.table.bound;
   const derate::TableGoal& goal = derating.options.table;
   if (bound.shortfall_ratio > goal.shortfall_ratio) {
-    constexpr double kNearSize_share = 0.5;
-    const bool is_full = static_cast<double>(derating.table.size_bytes()) > kNearSize_share * static_cast<double>(goal.most_bytes);
     document.add_note(
         Severity::note,
         fmt::format("Some current is lost: the table is up to {} % below the exact answer, more than the {} % of --error. {}",
                     derate::significant_above(100.0 * bound.shortfall_ratio, 2), base::significant(100.0 * goal.shortfall_ratio, 2),
-                    is_full ? "A larger --size lowers the loss."
-                            : "More grid points do not help: the exact answer has an edge between them. A larger --error saves memory."));
+                    bound.is_limited_by_size
+                        ? "A larger --size lowers the loss."
+                        : "More grid points do not help: the exact answer has an edge between them. A larger --error saves memory."));
   }
   document.add_note(
       Severity::background,

@@ -255,7 +255,7 @@ TEST(FrictionFit, names_the_problem_of_a_drive_that_does_not_determine_the_frict
 /// directions, so nothing is identifiable.
 TEST(FrictionFit, few_headings_leave_wide_intervals_or_nothing) {
   Coverage sine, constant, damping;
-  // Whether a wheel's terms are determined is decided by drawn noise and friction, so not every seed must agree.
+  // The drawn noise and friction decide whether a wheel's terms are identifiable. The claim therefore need not hold for every seed.
   EXPECT_TRUE(holds_for_share(0.9, 12, [&](std::uint64_t seed) {
     const Case known = any_case(seed);
     const auto fitted = [&](double first_deg) {

@@ -181,7 +181,7 @@ class Search {
         best_nats = gain_nats;
         best_score = std::move(score);
       }
-      // Whether another round follows is known as soon as one candidate is good enough; each one that is not makes it less probable.
+      // One good candidate decides whether another round follows. Each candidate that is not good makes another round less probable.
       const double follows =
           best ? (could_gain(*best_score) ? 1.0 : 0.0) : kNextRound * static_cast<double>(refitted - 1 - i) / static_cast<double>(refitted);
       progress_.expect(work_->after_whole_runs(rounds_from({all.size(), refitted, follows}, round + 1)));
