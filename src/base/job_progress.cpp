@@ -30,9 +30,9 @@ double quantile_s(const std::vector<Outcome>& ascending, double probability) {
   return ascending.back().remaining_s;
 }
 
-/// Returns the geometric middle of the most probable times whose ends differ by at most a factor of four.
+/// Returns the geometric middle of the most probable times whose ends differ by at most a factor of two.
 double likely_remaining_s(const std::vector<Outcome>& ascending) {
-  constexpr double kWidest_ratio = 4.0;
+  constexpr double kWidest_ratio = 2.0;  // the middle is within 1.4 of both ends; the rest of a factor of two is for the speed
   constexpr double kShortest_s = 1.0;  // shorter times need no distinction
   double best = 0.0;
   double likely_s = 0.0;

@@ -66,19 +66,19 @@ std::string time_words(double time_s) {
   return time_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(time_s / 60.0)) : fmt::format("{:.0f} s", std::ceil(time_s));
 }
 
-/// Formats "12 s" if that is within a factor of two of both ends of the range. Otherwise adds the end that is further away to the likely
-/// time: "about 40 s left, possibly 3 min". If more phases may follow: "at least 12 s left".
+/// Formats "12 s left" if the likely time is within a factor of two of both ends of the range. Otherwise adds the end that is further away:
+/// "about 40 s left, possibly 3 min". If more phases may follow: "at least 12 s left".
 std::string remaining_words(const base::JobEstimate& estimate) {
-  constexpr double kWide_ratio = 4.0;
+  constexpr double kWide_ratio = 2.0;
   const double shortest_s = std::max(1.0, estimate.shortest_s.value_or(0.0));
   const double longest_s = std::max(shortest_s, estimate.longest_s.value_or(0.0));
   if (estimate.is_open) {
     return fmt::format("at least {} left", time_words(shortest_s));
   }
-  if (longest_s <= kWide_ratio * shortest_s) {
-    return fmt::format("{} left", time_words(std::sqrt(shortest_s * longest_s)));
-  }
   const double likely_s = std::clamp(estimate.likely_s.value_or(shortest_s), shortest_s, longest_s);
+  if (longest_s <= kWide_ratio * likely_s && likely_s <= kWide_ratio * shortest_s) {
+    return fmt::format("{} left", time_words(likely_s));
+  }
   const bool is_end_later = longest_s / likely_s > likely_s / shortest_s;
   return fmt::format("about {} left, possibly {}", time_words(likely_s), time_words(is_end_later ? longest_s : shortest_s));
 }

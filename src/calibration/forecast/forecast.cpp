@@ -1,6 +1,7 @@
 #include "calibration/forecast/forecast.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -17,9 +18,9 @@ namespace {
 
 constexpr std::size_t kRefitted = 4;
 constexpr int kMostExtensions = 4;
-// Shares of the recorded jobs in which a round of extensions takes place, first and after another one.
+// Shares of 56 calibrations in which a round of extensions takes place, first and after another one.
 constexpr double kFirstRound = 0.95;
-constexpr double kNextRound = 0.35;
+constexpr double kNextRound = 0.25;
 constexpr int kScreeningSteps = 8;
 constexpr int kPieceSteps = 12;
 /// Largest ratio by which the perturbed starting point differs from the file.
@@ -51,6 +52,7 @@ struct Candidate {
   std::optional<ForecastModel> model;
   ForecastFit fit;
   double gain_nats = -std::numeric_limits<double>::infinity();
+  double cost_ratio = 1.0;  ///< duration of a simulation relative to the mean of the candidates
 };
 
 /// Returns `round` and those that may follow it: each follows the one before with the same probability. `begun`: rounds before it.
@@ -73,7 +75,7 @@ class Search {
 
   Forecast run(std::span<const Eigen::VectorXd> hints) {
     const CalibrationWork usual(runs_, runs_.size() > 1 ? runs_.size() : kBlocks, threads_);
-    FitCounter counter(progress_.begin(calibration_phases::kWholeRuns), usual.of_whole_runs(2 + hints.size()));
+    FitCounter counter(progress_, calibration_phases::kWholeRuns, usual.of_whole_runs(2 + hints.size()));
     out_.fit = best_of_starts(hints, counter);
     if (!std::isfinite(out_.fit.cost_nats)) {
       out_.source = ForecastSource::file;
@@ -105,7 +107,7 @@ class Search {
 
   [[nodiscard]] ForecastFit fitted_to_all(const ForecastModel& model, const Eigen::VectorXd& theta, ForecastRules rules,
                                           FitCounter& counter) const {
-    rules.on_simulation = counter.of_fit_to_all();
+    rules.on_simulation = [&counter] { counter.simulated_all(); };
     ForecastFit fit = fit_forecast(model, runs_, {}, theta, rules);
     counter.fitted_all();
     return fit;
@@ -165,8 +167,11 @@ class Search {
     std::vector<ExtensionRound> rounds = rounds_from(next, round + 1);
     rounds.insert(rounds.begin(), {all.size(), refitted, 1.0});
     progress_.expect(work_->after_whole_runs(rounds));
-    std::vector<Candidate> candidates = screened(all, progress_.begin(calibration_phases::kScreening));
-    FitCounter counter(progress_.begin(calibration_phases::kExtending), work_->of_extending(refitted));
+    std::vector<Candidate> candidates = screened(all);
+    std::vector<double> cost_ratios;
+    std::transform(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(refitted), std::back_inserter(cost_ratios),
+                   [](const Candidate& each) { return each.cost_ratio; });
+    FitCounter counter(progress_, calibration_phases::kExtending, work_->of_extending(std::move(cost_ratios)));
     Candidate* best = nullptr;
     std::optional<PieceScore> best_score;
     double best_nats = 0.0;
@@ -175,6 +180,7 @@ class Search {
       each.fit = fitted_to_all(*each.model, each.fit.theta, rules(), counter);
       const ForecastRules rules = of_piece();
       PieceScore score = score_pieces(*each.model, runs_, out_.pieces, each.fit.theta, &rules, &counter);
+      counter.ended_model();
       const double gain_nats = score_.score_nats - score.score_nats - kLeastGain_nats * each.extension->free_count;
       if (gain_nats > best_nats && matters(score)) {
         best = &each;
@@ -208,18 +214,25 @@ class Search {
   }
 
   /// Makes one short fit of each extension with the error and weight of the present fit. Returns the candidates, best first.
-  std::vector<Candidate> screened(const std::vector<Extension>& all, const base::Progress& progress) const {
+  std::vector<Candidate> screened(const std::vector<Extension>& all) const {
     std::vector<Candidate> candidates(all.size());
     const ForecastErrorModel held{out_.fit.error_K, out_.fit.weight};
-    const ForecastRules rules{.rounds = 1, .steps = kScreeningSteps, .held = held, .threads = 1};
-    base::in_parallel(all.size(), threads_, 0, all.size(), progress, [&](std::size_t i) {
+    ScreeningCounter counter(progress_, work_->of_screening(all.size()));
+    base::in_parallel(all.size(), threads_, [&](std::size_t i) {
+      const ForecastRules rules{
+          .rounds = 1, .steps = kScreeningSteps, .held = held, .threads = 1, .on_simulation = [&counter, i] { counter.simulated(i); }};
+      const auto begin = std::chrono::steady_clock::now();
       Candidate& each = candidates[i];
       each.extension = &all[i];
       each.setup = with_extension(out_.setup, all[i]);
       each.model.emplace(each.setup.model());
       each.fit = fit_forecast(*each.model, runs_, {}, carried_over(*model_, out_.fit.theta, *each.model, all[i]), rules);
       each.gain_nats = out_.fit.cost_nats - each.fit.cost_nats - 0.5 * all[i].free_count;
+      counter.fitted(i, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     });
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      candidates[i].cost_ratio = counter.cost_ratio(i);
+    }
     std::ranges::stable_sort(candidates, std::ranges::greater(), &Candidate::gain_nats);
     return candidates;
   }
@@ -228,7 +241,7 @@ class Search {
   void compare_with_rivals(bool chooses) {
     const ForecastRules ordinary{
         .is_tempered = false, .has_heat_factors = false, .rounds = 2, .steps = 2 * kPieceSteps, .threads = threads_};
-    FitCounter counter(progress_.begin(calibration_phases::kComparing), work_->of_comparing());
+    FitCounter counter(progress_, calibration_phases::kComparing, work_->of_comparing());
     const ForecastFit plain = fitted_to_all(*base_, base_->start(), ordinary, counter);
     const ForecastFit near = fitted_to_all(*base_, carried_over(*model_, out_.fit.theta, *base_), ordinary, counter);
     const ForecastFit& best_plain = near.error_K < plain.error_K ? near : plain;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <thread>
 #include <utility>
 
@@ -13,16 +14,29 @@ namespace {
 const std::string kResponse = "response";
 const std::string kSimulation = "simulation";
 
-// Usual numbers of simulations per fit: medians over 13 calibrations with 1 to 5 runs of 430 to 6900 rows. Those of extended models count
-// 1.3 times, because they have more parameters.
+// Usual numbers of simulations per fit: geometric means over 56 calibrations with four runs each.
 constexpr double kSimulations = 15.0;
-constexpr double kSimulations_without_piece = 9.5;
-constexpr double kSimulations_screening = 17.0;
-constexpr double kSimulations_extended = 30.0;
-constexpr double kSimulations_extended_without_piece = 20.0;
-constexpr double kSimulations_ordinary = 15.0;
+constexpr double kSimulations_without_piece = 10.0;
+constexpr double kSimulations_screening = 11.0;
+constexpr double kSimulations_extended = 20.0;
+constexpr double kSimulations_extended_without_piece = 14.0;
+constexpr double kSimulations_ordinary = 14.0;
 /// Duration of a fit of the response from a good start, relative to one from several starts.
 constexpr double kFromGoodStart_share = 0.85;
+
+/// Returns the expected number of simulations per fit: the mean of the ended fits, in which the usual number counts as one more.
+double expected_simulations(const FitWork& usual, double ended_simulations, double ended_fits) {
+  return (usual.simulations_count + ended_simulations) / (1.0 + ended_fits);
+}
+
+/// Reports the finished work of the present phase, and the work that is left.
+void report_work(const base::JobProgress& job, const base::Progress& progress, double done_s, double left_s) {
+  constexpr double kUnits = 1e6;
+  if (progress && done_s + left_s > 0.0) {
+    job.resize(done_s + left_s);
+    progress(static_cast<std::size_t>(std::lround(kUnits * done_s / (done_s + left_s))), static_cast<std::size_t>(kUnits));
+  }
+}
 
 double rows_of(const estimation::MeasuredRun& run) { return static_cast<double>(run.time_s.size()); }
 
@@ -56,6 +70,10 @@ CalibrationWork::CalibrationWork(std::span<const estimation::MeasuredRun> runs, 
   other_response_s_ = kFromGoodStart_share * piece_count_ * others_share * response_s_;
 }
 
+double PhaseFits::all_s() const {
+  return (to_all.all_s() + without_piece.all_s()) * std::accumulate(cost_ratios.begin(), cost_ratios.end(), 0.0);
+}
+
 PhaseFits CalibrationWork::fits_of(double to_all_count, double simulations_count, double without_piece_count,
                                    double simulations_without_piece_count) const {
   return {{to_all_count, simulations_count, all_runs_s_}, {without_piece_count, simulations_without_piece_count, other_runs_s_}};
@@ -65,12 +83,17 @@ PhaseFits CalibrationWork::of_whole_runs(std::size_t starts) const {
   return fits_of(static_cast<double>(starts), kSimulations, piece_count_, kSimulations_without_piece);
 }
 
-PhaseFits CalibrationWork::of_extending(std::size_t tested) const {
-  const auto count = static_cast<double>(tested);
-  return fits_of(count, kSimulations_extended, count * piece_count_, kSimulations_extended_without_piece);
+PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratios) const {
+  PhaseFits fits = fits_of(1.0, kSimulations_extended, piece_count_, kSimulations_extended_without_piece);
+  fits.cost_ratios = std::move(cost_ratios);
+  return fits;
 }
 
 PhaseFits CalibrationWork::of_comparing() const { return fits_of(2.0, kSimulations_ordinary, piece_count_, kSimulations_ordinary); }
+
+FitWork CalibrationWork::of_screening(std::size_t candidates) const {
+  return {static_cast<double>(candidates), kSimulations_screening, candidate_s_};
+}
 
 std::vector<base::JobPhase> CalibrationWork::all(bool refits_turning, std::span<const ExtensionRound> rounds) const {
   constexpr std::size_t kUsualStarts = 3;
@@ -84,9 +107,9 @@ std::vector<base::JobPhase> CalibrationWork::all(bool refits_turning, std::span<
 std::vector<base::JobPhase> CalibrationWork::after_whole_runs(std::span<const ExtensionRound> rounds) const {
   std::vector<base::JobPhase> phases;
   for (const ExtensionRound& round : rounds) {
-    phases.push_back({calibration_phases::kScreening, kSimulations_screening * candidate_s_ * static_cast<double>(round.candidates),
-                      round.probability, kSimulation});
-    phases.push_back({calibration_phases::kExtending, of_extending(round.tested).all_s(), round.probability, kSimulation});
+    const std::vector<double> usual_costs(round.tested, 1.0);
+    phases.push_back({calibration_phases::kScreening, of_screening(round.candidates).all_s(), round.probability, kSimulation});
+    phases.push_back({calibration_phases::kExtending, of_extending(usual_costs).all_s(), round.probability, kSimulation});
   }
   phases.push_back({calibration_phases::kComparing, of_comparing().all_s(), 1.0, kSimulation});
   phases.push_back({calibration_phases::kLeavingOut, other_response_s_, 1.0, kResponse});
@@ -94,32 +117,100 @@ std::vector<base::JobPhase> CalibrationWork::after_whole_runs(std::span<const Ex
   return phases;
 }
 
-FitCounter::FitCounter(base::Progress progress, const PhaseFits& fits) : progress_(std::move(progress)), fits_(fits) {}
-
-std::function<void()> FitCounter::simulated(const FitWork& fit) {
-  if (!progress_) {
-    return {};
-  }
-  return [this, &fit] {
-    constexpr double kMore_share = 0.5;
-    simulations_count_ += 1.0;
-    const double later = std::max(fit.simulations_count - simulations_count_, kMore_share * simulations_count_);
-    report(fit.one_s() * simulations_count_ / (simulations_count_ + later));
-  };
+FitCounter::FitCounter(const base::JobProgress& job, const std::string& phase, PhaseFits fits)
+    : job_(job),
+      progress_(job.begin(phase)),
+      to_all_{fits.to_all},
+      without_piece_{fits.without_piece},
+      cost_ratios_(std::move(fits.cost_ratios)) {
+  report();
 }
 
-void FitCounter::fitted(const FitWork& fit) {
-  done_s_ += fit.one_s();
-  simulations_count_ = 0.0;
-  report(0.0);
+double FitCounter::Count::expected() const { return expected_simulations(usual, ended_simulations, ended_fits); }
+
+double FitCounter::Count::left_of_model_s() const {
+  const double fits = usual.fits_count - fits_of_model;
+  if (fits <= 0.0) {
+    return 0.0;
+  }
+  // A fit that needs more simulations than expected is assumed to need half as many again.
+  constexpr double kMore_share = 0.5;
+  const double left = std::max(expected() - present_simulations, kMore_share * present_simulations);
+  return (left + (fits - 1.0) * expected()) * usual.simulation_s;
 }
 
-void FitCounter::report(double present_s) const {
-  constexpr double kUnits = 1e6;
-  if (progress_ && fits_.all_s() > 0.0) {
-    progress_(static_cast<std::size_t>(std::lround(kUnits * std::min(1.0, (done_s_ + present_s) / fits_.all_s()))),
-              static_cast<std::size_t>(kUnits));
+void FitCounter::simulated(Count& count) {
+  count.present_simulations += 1.0;
+  done_s_ += cost_ratios_[model_] * count.usual.simulation_s;
+  report();
+}
+
+void FitCounter::fitted(Count& count) {
+  count.ended_fits += 1.0;
+  count.fits_of_model += 1.0;
+  count.ended_simulations += count.present_simulations;
+  count.present_simulations = 0.0;
+  report();
+}
+
+void FitCounter::ended_model() {
+  model_ = std::min(model_ + 1, cost_ratios_.size() - 1);
+  for (Count* const count : {&to_all_, &without_piece_}) {
+    count->fits_of_model = 0.0;
+    count->present_simulations = 0.0;
   }
+  report();
+}
+
+void FitCounter::report() const {
+  double left_s = cost_ratios_[model_] * (to_all_.left_of_model_s() + without_piece_.left_of_model_s());
+  for (std::size_t later = model_ + 1; later < cost_ratios_.size(); ++later) {
+    left_s += cost_ratios_[later] * (to_all_.of_model_s() + without_piece_.of_model_s());
+  }
+  report_work(job_, progress_, done_s_, left_s);
+}
+
+ScreeningCounter::ScreeningCounter(const base::JobProgress& job, const FitWork& fits)
+    : job_(job),
+      progress_(job.begin(calibration_phases::kScreening)),
+      usual_(fits),
+      counts_(static_cast<std::size_t>(std::lround(fits.fits_count))) {}
+
+void ScreeningCounter::simulated(std::size_t candidate) {
+  const std::lock_guard lock(mutex_);
+  counts_[candidate].simulations += 1.0;
+  double done = 0.0;
+  double ended = 0.0;
+  double ended_fits = 0.0;
+  for (const Count& each : counts_) {
+    done += each.simulations;
+    ended += each.elapsed_s ? each.simulations : 0.0;
+    ended_fits += each.elapsed_s ? 1.0 : 0.0;
+  }
+  const double expected = expected_simulations(usual_, ended, ended_fits);
+  double left = 0.0;
+  for (const Count& each : counts_) {
+    left += each.elapsed_s ? 0.0 : std::max(0.0, expected - each.simulations);
+  }
+  report_work(job_, progress_, done * usual_.simulation_s, left * usual_.simulation_s);
+}
+
+void ScreeningCounter::fitted(std::size_t candidate, double elapsed_s) {
+  const std::lock_guard lock(mutex_);
+  counts_[candidate].elapsed_s = elapsed_s;
+}
+
+double ScreeningCounter::cost_ratio(std::size_t candidate) const {
+  const std::lock_guard lock(mutex_);
+  double elapsed_s = 0.0;
+  double simulations = 0.0;
+  for (const Count& each : counts_) {
+    elapsed_s += each.elapsed_s.value_or(0.0);
+    simulations += each.simulations;
+  }
+  const Count& own = counts_[candidate];
+  const double expected_s = elapsed_s * own.simulations;
+  return expected_s > 0.0 ? own.elapsed_s.value_or(0.0) * simulations / expected_s : 1.0;
 }
 
 }  // namespace heatsoak::calibration

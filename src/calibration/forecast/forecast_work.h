@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,21 +35,23 @@ struct ExtensionRound {
   double probability = 1.0;  ///< probability that the round takes place
 };
 
-/// Fits of one kind in a phase.
+/// Fits of a phase that share their usual number of simulations and the duration of each.
 struct FitWork {
-  double fits_count = 0.0;
+  double fits_count = 0.0;         ///< fits per model
   double simulations_count = 0.0;  ///< usual number of simulations per fit
-  double simulation_s = 0.0;       ///< duration of one simulation of all runs of the fit, with sensitivities
+  double simulation_s = 0.0;       ///< usual duration of one simulation of all runs of the fit, with sensitivities
 
-  [[nodiscard]] double one_s() const { return simulations_count * simulation_s; }
+  [[nodiscard]] double all_s() const { return fits_count * simulations_count * simulation_s; }
 };
 
-/// Fits of a phase: to all runs, and to the rest without one piece.
+/// Fits of a phase: for each model those to all runs, and those to the rest without one piece.
 struct PhaseFits {
   FitWork to_all;
   FitWork without_piece;
+  /// Duration of a simulation relative to the usual one, per model in the order of the fits.
+  std::vector<double> cost_ratios = {1.0};
 
-  [[nodiscard]] double all_s() const { return to_all.fits_count * to_all.one_s() + without_piece.fits_count * without_piece.one_s(); }
+  [[nodiscard]] double all_s() const;
 };
 
 /// Expected durations of a calibration's phases: the number of fits, times the usual number of simulations in a fit, times the duration of
@@ -65,10 +68,12 @@ class CalibrationWork {
 
   /// Returns the fits of kWholeRuns from this number of starting points.
   [[nodiscard]] PhaseFits of_whole_runs(std::size_t starts) const;
-  /// Returns the fits of kExtending for this number of tested extensions.
-  [[nodiscard]] PhaseFits of_extending(std::size_t tested) const;
+  /// Returns the fits of kExtending for the tested extensions with these durations of a simulation relative to the usual one.
+  [[nodiscard]] PhaseFits of_extending(std::vector<double> cost_ratios) const;
   /// Returns the fits of kComparing.
   [[nodiscard]] PhaseFits of_comparing() const;
+  /// Returns the short fits of kScreening, each of which simulates all runs on one core.
+  [[nodiscard]] FitWork of_screening(std::size_t candidates) const;
 
  private:
   [[nodiscard]] PhaseFits fits_of(double to_all_count, double simulations_count, double without_piece_count,
@@ -82,28 +87,75 @@ class CalibrationWork {
   double other_response_s_ = 0.0;  ///< fits of the response without each of the pieces
 };
 
-/// Reports the progress of a phase of fits. How many simulations a fit needs is not known before its end: one that needs more than usual is
-/// assumed to need half as many again, so that the later fits are expected to be slow, too.
+/// Progress of a phase of fits. How many simulations a fit needs is not known before its end. The expected work of the phase is corrected
+/// with each simulation, so that a fit of many simulations makes only the rest of its phase longer. The time per simulation is the only
+/// measure of speed that later phases take over.
 class FitCounter {
  public:
-  FitCounter(base::Progress progress, const PhaseFits& fits);
+  /// Begins the phase.
+  FitCounter(const base::JobProgress& job, const std::string& phase, PhaseFits fits);
 
-  /// Returns a function to be called after each simulation of a fit to all runs, or without a piece.
-  [[nodiscard]] std::function<void()> of_fit_to_all() { return simulated(fits_.to_all); }
-  [[nodiscard]] std::function<void()> of_fit_without_piece() { return simulated(fits_.without_piece); }
+  /// Counts a simulation of the present fit to all runs, or without a piece.
+  void simulated_all() { simulated(to_all_); }
+  void simulated_without_piece() { simulated(without_piece_); }
   /// Ends a fit to all runs, or without a piece.
-  void fitted_all() { fitted(fits_.to_all); }
-  void fitted_without_piece() { fitted(fits_.without_piece); }
+  void fitted_all() { fitted(to_all_); }
+  void fitted_without_piece() { fitted(without_piece_); }
+  /// Ends the fits of a model; those that are left did not take place.
+  void ended_model();
 
  private:
-  [[nodiscard]] std::function<void()> simulated(const FitWork& fit);
-  void fitted(const FitWork& fit);
-  void report(double present_s) const;
+  /// Fits of one kind, so far.
+  struct Count {
+    FitWork usual;
+    double ended_fits = 0.0;           ///< of all models
+    double ended_simulations = 0.0;    ///< of all models
+    double fits_of_model = 0.0;        ///< ended fits of the present model
+    double present_simulations = 0.0;  ///< of the present fit
 
+    /// Returns the expected number of simulations per fit.
+    [[nodiscard]] double expected() const;
+    /// Returns the expected duration of the fits that are left, relative to the cost of the model.
+    [[nodiscard]] double left_of_model_s() const;
+    [[nodiscard]] double of_model_s() const { return usual.fits_count * expected() * usual.simulation_s; }
+  };
+
+  void simulated(Count& count);
+  void fitted(Count& count);
+  void report() const;
+
+  base::JobProgress job_;
   base::Progress progress_;
-  PhaseFits fits_;
+  Count to_all_, without_piece_;
+  std::vector<double> cost_ratios_;
+  std::size_t model_ = 0;  ///< index of the present model
   double done_s_ = 0.0;
-  double simulations_count_ = 0.0;  ///< simulations of the present fit
+};
+
+/// Progress of the short fits of candidates, several of which run at the same time. All members may be called from any thread.
+class ScreeningCounter {
+ public:
+  /// Begins the phase.
+  ScreeningCounter(const base::JobProgress& job, const FitWork& fits);
+
+  /// Counts a simulation of a candidate.
+  void simulated(std::size_t candidate);
+  /// Ends the fit of a candidate, which took `elapsed_s`.
+  void fitted(std::size_t candidate, double elapsed_s);
+  /// Returns the duration of a simulation of this candidate, relative to the mean of all simulations.
+  [[nodiscard]] double cost_ratio(std::size_t candidate) const;
+
+ private:
+  struct Count {
+    double simulations = 0.0;
+    std::optional<double> elapsed_s = {};  ///< empty until the fit has ended
+  };
+
+  base::JobProgress job_;
+  base::Progress progress_;
+  FitWork usual_;
+  mutable std::mutex mutex_;
+  std::vector<Count> counts_;
 };
 
 }  // namespace heatsoak::calibration

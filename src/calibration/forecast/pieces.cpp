@@ -137,7 +137,7 @@ PieceScore score_pieces(const ForecastModel& model, std::span<const estimation::
   ForecastRules counted = *rules;
   std::function<void()> after_piece;
   if (counter != nullptr) {
-    counted.on_simulation = counter->of_fit_without_piece();
+    counted.on_simulation = [counter] { counter->simulated_without_piece(); };
     after_piece = [counter] { counter->fitted_without_piece(); };
   }
   return score_pieces(

@@ -1,4 +1,5 @@
-// Cost of limiting at three levels of aggressiveness: the guard compared with seven other methods, one of which knows the true motor.
+// Cost of limiting at three levels of aggressiveness: the guard compared with other methods. Two of them are tuned in hindsight, one
+// knows the true motor.
 #include "cost_study.h"
 
 #include <fmt/format.h>
@@ -20,23 +21,37 @@ constexpr std::size_t kMatches = 3;
 constexpr std::size_t kFirstSeed = 11;  ///< the guard's approach time was chosen with the matches of seeds 1 to 3
 constexpr std::size_t kMotors = 9;      ///< motors, each assigned to one of the matches
 
-enum class Method : std::uint8_t { none, sheet_cap, sheet_cap_unsensed, hindsight_cap, stator_ramp, overload, guard_unsensed, guard, oracle };
+enum class Method : std::uint8_t {
+  none,
+  sheet_cap,
+  sheet_cap_unsensed,
+  stator_ramp,
+  overload,
+  guard_unsensed,
+  guard,
+  hindsight_cap,
+  hindsight_guard,
+  oracle
+};
 struct MethodSpec {
   Method method;
   const char* key;
   const char* name;
 };
-constexpr std::array<MethodSpec, 9> kMethods{{{Method::none, "none", "no limit"},
-                                              {Method::sheet_cap, "cap_data_sheet", "cap, data sheet's continuous"},
-                                              {Method::sheet_cap_unsensed, "cap_data_sheet_unsensed", "the same cap, nothing sensed"},
-                                              {Method::hindsight_cap, "cap_hindsight", "cap found in hindsight"},
-                                              {Method::stator_ramp, "stator_ramp", "stator ramp 85 to 100 °C"},
-                                              {Method::overload, "i2t", "I²t, data sheet's peak"},
-                                              {Method::guard_unsensed, "guard_unsensed", "guard, nothing sensed"},
-                                              {Method::guard, "guard", "guard, current and air sensed"},
-                                              {Method::oracle, "oracle", "oracle (true motor)"}}};
+constexpr std::array<MethodSpec, 10> kMethods{{{Method::none, "none", "no limit"},
+                                               {Method::sheet_cap, "cap_data_sheet", "cap, data sheet's continuous"},
+                                               {Method::sheet_cap_unsensed, "cap_data_sheet_unsensed", "the same cap, nothing sensed"},
+                                               {Method::stator_ramp, "stator_ramp", "stator ramp 85 to 100 °C"},
+                                               {Method::overload, "i2t", "I²t, data sheet's peak"},
+                                               {Method::guard_unsensed, "guard_unsensed", "guard, nothing sensed"},
+                                               {Method::guard, "guard", "guard, current and air sensed"},
+                                               {Method::hindsight_cap, "cap_hindsight", "cap found in hindsight"},
+                                               {Method::hindsight_guard, "guard_hindsight", "guard, factor found in hindsight"},
+                                               {Method::oracle, "oracle", "oracle (true motor)"}}};
 constexpr std::size_t place_of(Method method) { return static_cast<std::size_t>(method); }
 constexpr bool is_guard(Method method) { return method == Method::guard || method == Method::guard_unsensed; }
+/// True if the method is tuned to the very motors and matches that it is judged by.
+constexpr bool is_hindsight(Method method) { return method == Method::hindsight_cap || method == Method::hindsight_guard; }
 constexpr bool has_sensors(Method method) { return method != Method::guard_unsensed && method != Method::sheet_cap_unsensed; }
 
 struct Level {
@@ -65,14 +80,18 @@ struct Run {
 struct Cell {
   const Level* level = nullptr;
   const Known* known = nullptr;
-  double cap_A = base::kUnknown;  ///< found in hindsight; absent if no cap is needed
+  // Found in hindsight; empty if no limit is needed.
+  std::optional<double> cap_A = {};
+  std::optional<double> heat_factor = {};
   std::array<std::vector<Run>, kMethods.size()> runs;
 };
 
 const Game& game_of(const Level& level, std::size_t motor) { return level.games[motor % kMatches]; }
 std::uint64_t seed_of(std::size_t motor) { return motor % kMatches + kFirstSeed; }
 
-std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const robot::Robot& robot) {
+/// `heat_factor`: safety factor on heat of the guard that is found in hindsight.
+std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::size_t i, const robot::Robot& robot,
+                                      std::optional<double> heat_factor) {
   const derate::Derating& exact = known.exact[i];
   const motor::Motor& motor = known.drawn[i];
   const double ratio = motor.nominal.terminal_resistance_ohm / known.motor.nominal.terminal_resistance_ohm;
@@ -84,23 +103,28 @@ std::unique_ptr<Limiter> make_limiter(Method method, const Known& known, std::si
     case Method::overload:
       return Limiter::i_squared_t(exact, ratio, overload_of(known.motor.nominal));
     case Method::oracle:
-      return Limiter::oracle(exact, ratio, firmware::braking_reserve_K(robot, motor.nominal, exact));
+      return Limiter::guard(exact, ratio, firmware::braking_reserve_K(robot, motor.nominal, exact));
+    case Method::hindsight_guard: {
+      const derate::Derating tuned = derating_with(heat_factor.value(), known.motor, robot);
+      return Limiter::guard(tuned, 1.0, firmware::braking_reserve_K(robot, known.motor.nominal, tuned));
+    }
     default:
       return nullptr;
   }
 }
 
-Run drive(const Level& level, const Known& known, Method method, std::size_t i, double cap_A = base::kUnknown) {
+/// `setting`: of a method that is found in hindsight, the cap in A or the safety factor on heat.
+Run drive(const Level& level, const Known& known, Method method, std::size_t i, std::optional<double> setting = {}) {
   robot::Robot robot = level.match.robot;
   // The firmware limits the current through the voltage and the lowest resistance, so a cold winding gets more than a warm one.
   if (method == Method::hindsight_cap) {
-    robot.drive.current_limit_A = cap_A;
+    robot.drive.current_limit_A = setting.value();
   } else if (method == Method::sheet_cap_unsensed) {
     robot.drive.current_limit_A = overload_of(known.motor.nominal).continuous_A;
   }
   const Game& game = game_of(level, i);
   Hardship hardship;
-  if (const std::unique_ptr<Limiter> limiter = make_limiter(method, known, i, robot)) {
+  if (const std::unique_ptr<Limiter> limiter = make_limiter(method, known, i, robot, setting)) {
     hardship = drive_hard(level.match, game, limiter->config(robot, known.motor), has_sensors(method), known.drawn[i], seed_of(i), false);
   } else {
     const GuardedCore core(robot, known.motor, is_guard(method) ? GuardUse::on : GuardUse::off, known.guard);
@@ -109,27 +133,32 @@ Run drive(const Level& level, const Known& known, Method method, std::size_t i, 
   return {hardship.score.winding_peak_C, hardship.score.distance_m, hardship.off_plan_s};
 }
 
-/// Finds the largest cap, to 0.1 A, with which all motors keep their limits in their matches, and drives all motors with it. The search
-/// starts with the motor that is hottest without limit and continues with any motor that still exceeds its limit.
-void find_cap(Cell& cell) {
-  const std::vector<Run>& free = cell.runs[place_of(Method::none)];
-  std::vector<Run>& runs = cell.runs[place_of(Method::hindsight_cap)];
-  runs = free;
+/// Finds the setting of `method` closest to `loose`, to `accuracy`, with which all motors keep their limits in their matches, and drives
+/// all motors with it. The search starts with the motor that is hottest without limit and continues with any motor that still exceeds its
+/// limit. Returns nothing if no limit is needed.
+std::optional<double> find_setting(Cell& cell, Method method, double strict, double loose, double accuracy) {
+  std::vector<Run>& runs = cell.runs[place_of(method)];
+  runs = cell.runs[place_of(Method::none)];
   const double limit_C = cell.known->motor.nominal.winding_limit_C;
-  double high_A = 12.0;
+  std::optional<double> found;
   for (;;) {
     const auto hottest = static_cast<std::size_t>(std::ranges::max_element(runs, {}, &Run::peak_C) - runs.begin());
     if (runs[hottest].peak_C <= limit_C) {
-      return;
+      return found;
     }
-    double low_A = 0.5;
-    while (high_A - low_A > 0.1) {
-      const double tried_A = 0.5 * (low_A + high_A);
-      (drive(*cell.level, *cell.known, Method::hindsight_cap, hottest, tried_A).peak_C <= limit_C ? low_A : high_A) = tried_A;
+    double keeps = strict;
+    while (std::abs(loose - keeps) > accuracy) {
+      const double tried = 0.5 * (keeps + loose);
+      (drive(*cell.level, *cell.known, method, hottest, tried).peak_C <= limit_C ? keeps : loose) = tried;
     }
-    cell.cap_A = high_A = low_A;
-    base::in_parallel(kMotors, 0, [&](std::size_t i) { runs[i] = drive(*cell.level, *cell.known, Method::hindsight_cap, i, cell.cap_A); });
+    found = loose = keeps;
+    base::in_parallel(kMotors, 0, [&](std::size_t i) { runs[i] = drive(*cell.level, *cell.known, method, i, keeps); });
   }
+}
+
+void find_settings(Cell& cell) {
+  cell.cap_A = find_setting(cell, Method::hindsight_cap, 0.5, 12.0, 0.1);
+  cell.heat_factor = find_setting(cell, Method::hindsight_guard, 3.0, 0.7, 0.01);
 }
 
 void run_all(std::vector<Cell>& cells, std::initializer_list<Method> methods) {
@@ -178,7 +207,9 @@ std::string name_of(const Cell& cell, const MethodSpec& spec) {
     case Method::sheet_cap_unsensed:
       return fmt::format("{}, {:.1f} A", spec.name, overload_of(cell.known->motor.nominal).continuous_A);
     case Method::hindsight_cap:
-      return std::isnan(cell.cap_A) ? fmt::format("{}: none needed", spec.name) : fmt::format("{}: {:.1f} A", spec.name, cell.cap_A);
+      return cell.cap_A ? fmt::format("{}: {:.1f} A", spec.name, *cell.cap_A) : fmt::format("{}: none needed", spec.name);
+    case Method::hindsight_guard:
+      return cell.heat_factor ? fmt::format("{}: {:.2f}", spec.name, *cell.heat_factor) : fmt::format("{}: none needed", spec.name);
     default:
       return spec.name;
   }
@@ -233,12 +264,14 @@ Sheet all_runs(const std::vector<Cell>& cells) {
   return sheet;
 }
 
-/// Smallest lost distance of the other methods that overheat no motor. The oracle is excluded, because it needs the true motor.
+/// Smallest lost distance of the other methods that a team can choose before the match and that overheat no motor. The oracle is excluded,
+/// because it needs the true motor.
 double best_rival_percent(const Cell& cell) {
   double least = std::numeric_limits<double>::infinity();
   for (const MethodSpec& spec : kMethods) {
     const Cost cost = cost_of(cell, spec.method);
-    if (spec.method != Method::none && spec.method != Method::oracle && !is_guard(spec.method) && cost.keeps_limit()) {
+    if (spec.method != Method::none && spec.method != Method::oracle && !is_hindsight(spec.method) && !is_guard(spec.method) &&
+        cost.keeps_limit()) {
       least = std::min(least, cost.lost_percent);
     }
   }
@@ -261,10 +294,10 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
   }
   const Cell& bench = cells.back();
   const Cell& file = cells[cells.size() - 2];
-  const std::string title =
-      fmt::format("Distance lost in the hard match: guard {} %, best other way {} % (bench data); {} % and {} % (estimates)",
-                  number(cost_of(bench, Method::guard).lost_percent, 1), number(best_rival_percent(bench), 1),
-                  number(cost_of(file, Method::guard).lost_percent, 1), number(best_rival_percent(file), 1));
+  const std::string title = fmt::format(
+      "Distance lost in the hard match: guard {} %, best other way known before it {} % (bench data); {} % and {} % (estimates)",
+      number(cost_of(bench, Method::guard).lost_percent, 1), number(best_rival_percent(bench), 1),
+      number(cost_of(file, Method::guard).lost_percent, 1), number(best_rival_percent(file), 1));
   return draw_costs(
       title,
       {fmt::format("Twente v2024, ECX FLAT 32 L, division_a_match, simulated with real sensing: {} motors that represent "
@@ -281,7 +314,7 @@ Known make_known(std::string name, const char* key, motor::Motor motor, const ro
   known.guard = make_guard(known.motor, robot, 40.0, 0);
   known.drawn = representative_motors(known.motor, kMotors);
   std::vector<std::optional<derate::Derating>> exact(kMotors);
-  base::in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(exact_derating(known.drawn[i], robot)); });
+  base::in_parallel(kMotors, 0, [&](std::size_t i) { exact[i].emplace(derating_with(1.0, known.drawn[i], robot)); });
   for (std::optional<derate::Derating>& each : exact) {
     known.exact.push_back(std::move(*each));
   }
@@ -315,9 +348,9 @@ void study_costs(const Subject& subject, const Report& report) {
     }
   }
   run_all(cells, {Method::none});
-  base::in_parallel(cells.size(), 0, [&](std::size_t i) { find_cap(cells[i]); });
-  run_all(cells, {Method::sheet_cap, Method::sheet_cap_unsensed, Method::stator_ramp, Method::overload, Method::guard_unsensed, Method::guard,
-                  Method::oracle});
+  base::in_parallel(cells.size(), 0, [&](std::size_t i) { find_settings(cells[i]); });
+  run_all(cells, {Method::sheet_cap, Method::sheet_cap_unsensed, Method::stator_ramp, Method::overload, Method::guard_unsensed,
+                  Method::guard, Method::oracle});
 
   const Overload overload = overload_of(subject.motor.nominal);
   std::string text = fmt::format(

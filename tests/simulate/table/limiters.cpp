@@ -26,17 +26,17 @@ derate::Derating scaled(derate::Derating exact, double ratio) {
 
 }  // namespace
 
-derate::Derating exact_derating(const motor::Motor& motor, const robot::Robot& robot) {
+derate::Derating derating_with(double heat_factor, const motor::Motor& motor, const robot::Robot& robot) {
   const derate::DerateOptions options;
   const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
-  derate::Observer observer(network, motor.nominal, robot, 1.0);
+  derate::Observer observer(network, motor.nominal, robot, heat_factor);
   derate::BarrierRules rules = derate::barrier_rules(motor, robot, options);
   const double reachable_rad_per_s = rules.most_speed_rad_per_s;
   rules.most_speed_rad_per_s = derate::sustainable_speed_rad_per_s(observer, rules);
   if (rules.most_speed_rad_per_s < reachable_rad_per_s) {
     rules.no_current_speed_rad_per_s.reset();
   }
-  // The oracle's table is nearly exact.
+  // The table is nearly exact.
   derate::CurrentTable table = derate::current_table(observer, rules, {.shortfall_ratio = 0.003, .most_bytes = 1U << 16U});
   return {.motor_id = motor.id,
           .robot_id = robot.id,
@@ -126,8 +126,8 @@ std::unique_ptr<Limiter> Limiter::i_squared_t(const derate::Derating& exact, dou
   return made;
 }
 
-std::unique_ptr<Limiter> Limiter::oracle(const derate::Derating& exact, double resistance_ratio, double braking_reserve_K) {
-  std::unique_ptr<Limiter> made(new Limiter(exact, resistance_ratio));
+std::unique_ptr<Limiter> Limiter::guard(const derate::Derating& derating, double resistance_ratio, double braking_reserve_K) {
+  std::unique_ptr<Limiter> made(new Limiter(derating, resistance_ratio));
   made->braking_reserve_K_ = braking_reserve_K;
   return made;
 }

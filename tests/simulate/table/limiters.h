@@ -9,8 +9,9 @@
 
 namespace heatsoak::simulate::studies {
 
-/// Derating for exactly this motor: safety factor on heat 1, no tolerances, no check on drawn motors.
-derate::Derating exact_derating(const motor::Motor& motor, const robot::Robot& robot);
+/// Derating of the nominal motor with a given safety factor on heat: no tolerances, no check on drawn motors. With a factor of 1 it is
+/// exact for this motor.
+derate::Derating derating_with(double heat_factor, const motor::Motor& motor, const robot::Robot& robot);
 
 /// Overload data of a data sheet for an I²t limiter.
 struct Overload {
@@ -36,8 +37,8 @@ class Limiter {
   static std::unique_ptr<Limiter> stator_ramp(const derate::Derating& exact, double resistance_ratio, double full_C, double none_C);
   /// dE/dt = I² − I_continuous², E ≥ 0. Full current up to 90 % of the budget, continuous current at 100 %, linear between.
   static std::unique_ptr<Limiter> i_squared_t(const derate::Derating& exact, double resistance_ratio, const Overload& overload);
-  /// The guard from the derating of the true motor.
-  static std::unique_ptr<Limiter> oracle(const derate::Derating& exact, double resistance_ratio, double braking_reserve_K);
+  /// The guard from a derating: an oracle if it is that of the true motor.
+  static std::unique_ptr<Limiter> guard(const derate::Derating& derating, double resistance_ratio, double braking_reserve_K);
 
   Limiter(const Limiter&) = delete;
   Limiter& operator=(const Limiter&) = delete;

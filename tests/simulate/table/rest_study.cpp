@@ -207,7 +207,8 @@ std::string study_rest(const HardMatch& match, const Game& game, const motor::Mo
     return static_cast<double>(each.current_A) * static_cast<double>(each.current_A);
   });
   std::vector<Judge> judges;
-  judges.emplace_back("nominal motor, winding within its limit", firmware::HostGuard(exact_derating(motor, match.robot)), base::kUnknown);
+  judges.emplace_back("nominal motor, winding within its limit", firmware::HostGuard(derating_with(1.0, motor, match.robot)),
+                      base::kUnknown);
   for (const Knowledge& each : known) {
     judges.emplace_back(each.name, *each.guard->guard, firmware::braking_reserve_K(match.robot, motor.nominal, *each.guard->derating));
   }
