@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,62 @@ TEST_F(ChartTest, NameOfALimitInARippleStandsBesideThePlot) {
   EXPECT_LT(name->number("x"), winding.x.px(40.0) + 20.0);
   EXPECT_NEAR(name->number("y"), winding.y.px(155.0), 6.0);
   EXPECT_GT(name->number("y"), last->number("y") + 12.0);
+}
+
+/// Returns a panel of level curves over 40 min with a limit at 155 °C.
+ChartPanel level_curves(const std::vector<double>& temperatures_C) {
+  ChartPanel panel{.y_label = "winding temperature / °C", .levels = {{"limit 155 °C of 3 motors", 155.0}}};
+  for (const double each_C : temperatures_C) {
+    panel.curves.push_back({.x = {0.0, 20.0, 40.0}, .y = {each_C, each_C, each_C}});
+  }
+  return panel;
+}
+
+struct NamedLimit {
+  double middle_px = 0.0;         ///< of the name, from the top of the picture
+  std::vector<Point> plate = {};  ///< corners of the white rectangle behind it; empty: none
+};
+
+NamedLimit named_limit(const std::vector<Element>& elements) {
+  const auto name = std::ranges::find_if(elements, [](const Element& each) { return each.text == "limit 155 °C of 3 motors"; });
+  if (name == elements.end()) {
+    throw std::runtime_error("the limit has no name");
+  }
+  NamedLimit limit{.middle_px = name->number("y") - 0.36 * name->number("font-size")};
+  if (const auto before = name - 1; before->name == "path" && before->at("fill") == "#ffffff") {
+    limit.plate = points(before->at("d"));
+  }
+  return limit;
+}
+
+TEST_F(ChartTest, NameOfALimitBetweenCloseCurvesInterruptsItsLine) {
+  const auto elements = drawn({.x_label = "time / min", .panels = {level_curves({25.0, 147.0, 163.0, 260.0})}});
+  const SeenPanel panel = seen_panels(elements).at(0);
+  const NamedLimit limit = named_limit(elements);
+  EXPECT_NEAR(limit.middle_px, panel.y.px(155.0), 1.5);
+  ASSERT_FALSE(limit.plate.empty());
+  for (const Point& corner : limit.plate) {
+    EXPECT_GT(corner.y_px, panel.y.px(163.0));
+    EXPECT_LT(corner.y_px, panel.y.px(147.0));
+  }
+}
+
+TEST_F(ChartTest, NameOfALimitAmongManyCurvesHidesThem) {
+  std::vector<double> temperatures_C;
+  for (double each_C = 25.0; each_C <= 265.0; each_C += 5.0) {
+    temperatures_C.push_back(each_C);
+  }
+  const NamedLimit limit = named_limit(drawn({.x_label = "time / min", .panels = {level_curves(temperatures_C)}}));
+  ASSERT_FALSE(limit.plate.empty());
+  const auto [top, bottom] = std::ranges::minmax(limit.plate, {}, &Point::y_px);
+  const auto [left, right] = std::ranges::minmax(limit.plate, {}, &Point::x_px);
+  EXPECT_GT(limit.middle_px, top.y_px);
+  EXPECT_LT(limit.middle_px, bottom.y_px);
+  EXPECT_GT(right.x_px - left.x_px, 100.0) << "narrower than the name";
+}
+
+TEST_F(ChartTest, NameOfALimitAwayFromCurvesHidesNothing) {
+  EXPECT_TRUE(named_limit(drawn({.x_label = "time / min", .panels = {level_curves({25.0, 260.0})}})).plate.empty());
 }
 
 TEST_F(ChartTest, NoLineBreaksBetweenANumberAndItsUnit) {

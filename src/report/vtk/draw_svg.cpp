@@ -248,6 +248,21 @@ class Lettering : public vtkContextItem {
     }
   }
 
+  /// Paints the white rectangle behind a text that is not upright.
+  static void paint_plate(vtkContext2D* painter, const PlacedText& text) {
+    constexpr double kAscent = 0.85;  // of the letters, per size
+    constexpr double kDescent = 0.25;
+    const double width_px = text_width_px(text.text, text.style);
+    const double behind = text.anchor == Anchor::left ? 0.0 : text.anchor == Anchor::middle ? 0.5 : 1.0;
+    const auto left_px = static_cast<float>(text.x_px - behind * width_px);
+    const auto right_px = left_px + static_cast<float>(width_px);
+    const auto bottom_px = static_cast<float>(text.y_px - kDescent * text.style.size_px);
+    const auto top_px = static_cast<float>(text.y_px + kAscent * text.style.size_px);
+    float corners[] = {left_px, bottom_px, left_px, top_px, right_px, bottom_px, right_px, top_px};
+    painter->GetBrush()->SetColor(255, 255, 255, 255);
+    painter->DrawQuadStrip(corners, 4);
+  }
+
   static void paint(vtkContext2D* painter, const PlacedText& text) {
     vtkTextProperty* property = painter->GetTextProp();
     property->SetFontSize(text.style.size_px);
@@ -258,7 +273,10 @@ class Lettering : public vtkContextItem {
                                                                : VTK_TEXT_RIGHT);
     property->SetVerticalJustificationToBottom();
     property->SetOrientation(text.is_upright ? 90.0 : 0.0);
-    property->SetShadow(text.has_rim);
+    if (text.ground == Ground::plate) {
+      paint_plate(painter, text);
+    }
+    property->SetShadow(text.ground == Ground::rim);
     painter->DrawString(static_cast<float>(text.x_px), static_cast<float>(text.y_px), text.text);
     property->SetShadow(false);
   }

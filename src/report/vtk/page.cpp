@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
-#include <optional>
 #include <tuple>
 
-#include "report/vtk/reduce.h"
+#include "report/vtk/level_names.h"
 
 namespace heatsoak::report {
 namespace {
@@ -16,7 +14,6 @@ constexpr TextStyle kTitleStyle{.size_px = 20, .is_bold = true, .color = {0x11, 
 constexpr TextStyle kSubtitleStyle{.size_px = 13, .is_bold = false, .color = {0x6B, 0x6B, 0x6B}};
 constexpr TextStyle kPanelTitleStyle{.size_px = 14, .is_bold = true};
 constexpr TextStyle kLabelStyle{.size_px = 13};
-constexpr TextStyle kLimitStyle{.size_px = 12, .is_bold = false, .color = {kLimitColor[0], kLimitColor[1], kLimitColor[2]}};
 
 constexpr double kMargin_px = 24.0;
 constexpr double kLabelLine_px = 18.0;
@@ -110,66 +107,6 @@ AxisRange y_range(const ChartPanel& panel) {
   return range.with_headroom(kHeadroom);
 }
 
-/// Rectangle; y counts downwards.
-struct Box {
-  double left_px;
-  double right_px;
-  double top_px;
-  double bottom_px;
-};
-
-bool overlap(const Box& a, const Box& b) {
-  return a.left_px < b.right_px && b.left_px < a.right_px && a.top_px < b.bottom_px && b.top_px < a.bottom_px;
-}
-
-/// Returns whether the line from `a` to `b` crosses the box.
-bool passes(const CurvePoint& a, const CurvePoint& b, const Box& box) {
-  const auto [left, right] = std::minmax(a, b, [](const auto& p, const auto& q) { return p.x_px < q.x_px; });
-  const double slope = right.x_px > left.x_px ? (right.y_px - left.y_px) / (right.x_px - left.x_px) : 0.0;
-  const double from_px = std::max(left.x_px, box.left_px);
-  const double to_px = std::min(right.x_px, box.right_px);
-  const double y_from_px = left.y_px + slope * (from_px - left.x_px);
-  const double y_to_px = slope == 0.0 ? right.y_px : left.y_px + slope * (to_px - left.x_px);
-  return from_px <= to_px && std::min(y_from_px, y_to_px) < box.bottom_px && std::max(y_from_px, y_to_px) > box.top_px;
-}
-
-bool is_taken(const Box& box, const std::vector<Box>& names, const std::vector<std::vector<CurvePoint>>& curves) {
-  return std::ranges::any_of(names, [&](const Box& name) { return overlap(box, name); }) ||
-         std::ranges::any_of(curves, [&](const std::vector<CurvePoint>& points) {
-           const auto through_box = [&](const CurvePoint& a, const CurvePoint& b) { return passes(a, b, box); };
-           return std::ranges::adjacent_find(points, through_box) != points.end();
-         });
-}
-
-/// Moves `box` to the left until it is free; returns nothing if it does not become free.
-std::optional<Box> free_place(Box box, double left_end_px, const std::vector<Box>& names,
-                              const std::vector<std::vector<CurvePoint>>& curves) {
-  constexpr double kStep_px = 10.0;
-  while (box.left_px > left_end_px) {
-    if (!is_taken(box, names, curves)) {
-      return box;
-    }
-    box.left_px -= kStep_px;
-    box.right_px -= kStep_px;
-  }
-  return std::nullopt;
-}
-
-/// Returns all unbroken pieces of all curves, with the edges of a ripple in its place.
-std::vector<std::vector<CurvePoint>> curves_px(const ChartPanel& panel, const AxisScale& horizontal, const AxisScale& vertical) {
-  std::vector<std::vector<CurvePoint>> all;
-  for (const ChartCurve& curve : panel.curves) {
-    for (std::vector<CurvePoint>& piece : reduce(curve, horizontal, vertical)) {
-      if (curve.has_ripple) {
-        std::ranges::move(drawn_lines(without_ripple(piece)), std::back_inserter(all));
-      } else {
-        all.push_back(std::move(piece));
-      }
-    }
-  }
-  return all;
-}
-
 /// Builds a Page from top to bottom. y counts downwards here; the result is flipped at the end.
 class PageBuilder {
  public:
@@ -234,8 +171,7 @@ class PageBuilder {
     right_px_ = page_.width_px - kMargin_px;
     // A wide legend beside several panels, or a single entry beside any, would leave most of its column empty.
     constexpr double kBroad_share = 0.27;
-    const bool wastes_column =
-        entries_.size() == 1 || (chart_.panels.size() > 1 && column_width_px() > kBroad_share * page_.width_px);
+    const bool wastes_column = entries_.size() == 1 || (chart_.panels.size() > 1 && column_width_px() > kBroad_share * page_.width_px);
     is_legend_on_top_ = wastes_column && column_width_px() <= right_px_ - left_px_;
     if (!entries_.empty() && !is_legend_on_top_) {
       legend_x_px_ = std::floor(right_px_ - legend_px - kSwatchWidth_px - 8.0);
@@ -263,7 +199,12 @@ class PageBuilder {
     add_ranges(panel, left_px_ + curves_px, top_px, place);
     place.y_ticks = ticks(place.vertical.range, plot_px / kTickDistanceY_px);
     add_y_label(panel, (top_px + bottom_px) / 2.0);
-    add_level_names(panel, place);
+    const LevelSpace space{.left_px = left_px_,
+                           .last_px = right_px_ - ranges_px() - 6.0,
+                           .outside_px = right_px_ + 8.0,
+                           .end_px = page_.width_px - 6.0,
+                           .legend_bottom_px = legend_bottom_px_};
+    std::ranges::move(level_names(panel, place, space), std::back_inserter(page_.texts));
     page_.panels.push_back(std::move(place));
     y_px_ = bottom_px + kTickRow_px;
   }
@@ -299,85 +240,6 @@ class PageBuilder {
     for (const std::string& line : y_label(panel)) {
       add({.text = line, .x_px = x_px, .y_px = middle_px, .style = kLabelStyle, .anchor = Anchor::middle, .is_upright = true});
       x_px += kLabelLine_px;
-    }
-  }
-
-  /// Returns a free place to the right of the panel, at the line or up to a few text lines away from it.
-  [[nodiscard]] std::optional<Box> place_outside(double line_px, double width_px, const std::vector<Box>& names) const {
-    const double left_px = right_px_ + 8.0;
-    const double height_px = 1.2 * kLimitStyle.size_px;
-    for (const double half_lines : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -1.0, -2.0, -3.0}) {
-      const double middle_px = line_px + half_lines * 0.5 * height_px;
-      const Box place{left_px, left_px + width_px, middle_px - 0.5 * height_px, middle_px + 0.5 * height_px};
-      if (place.right_px <= page_.width_px - 6.0 && place.top_px > legend_bottom_px_ && !is_taken(place, names, {})) {
-        return place;
-      }
-    }
-    return std::nullopt;
-  }
-
-  /// Places the name of a level above the right end of its line; below it if the top or another level is near; further left if a curve or a
-  /// name is in the way; to the right of the panel if there is no free place inside.
-  void add_level_names(const ChartPanel& panel, const PanelPlace& place) {
-    if (panel.levels.empty()) {
-      return;
-    }
-    const AxisScale& vertical = place.vertical;
-    const auto curves = curves_px(panel, place.horizontal, vertical);
-    const double last_px = right_px_ - ranges_px() - 6.0;
-    std::vector<Box> names;
-    std::vector<ChartLevel> from_above = panel.levels;
-    std::erase_if(from_above, [](const ChartLevel& level) { return level.name.empty() || !std::isfinite(level.y); });
-    std::ranges::stable_sort(from_above, std::greater(), &ChartLevel::y);
-    for (const ChartLevel& level : from_above) {
-      const AxisRange& shown = vertical.range;
-      const std::string arrow = level.y > shown.high ? "↑ " : level.y < shown.low ? "↓ " : "";
-      const std::string name = arrow + printable(level.name);
-      constexpr double kBetweenNames_px = 12.0;
-      const double width_px = text_width_px(name, kLimitStyle) + (arrow.empty() ? 0.0 : kBetweenNames_px);
-      const double line_px = vertical.to_px(std::clamp(level.y, shown.low, shown.high));
-      std::vector<Box> taken = names;
-      for (const ChartLevel& other : panel.levels) {
-        if (other.y != level.y && other.y >= shown.low && other.y <= shown.high) {
-          taken.push_back({left_px_, right_px_, vertical.to_px(other.y) - 1.0, vertical.to_px(other.y) + 1.0});
-        }
-      }
-      const auto baseline_at = [&](double y_px) { return Box{last_px - width_px, last_px, y_px - kLimitStyle.size_px, y_px + 3.0}; };
-      const Box above = baseline_at(line_px - 5.0);
-      const Box below = baseline_at(line_px + 14.0);
-      const bool top_is_near = line_px - vertical.high_px < kLimitStyle.size_px + 1.0;
-      const std::optional<Box> outside = place_outside(line_px, width_px, names);
-      PlacedText text{.text = name,
-                      .x_px = above.right_px,
-                      .y_px = above.bottom_px - 3.0,
-                      .style = kLimitStyle,
-                      .anchor = Anchor::right,
-                      .has_rim = true};
-      std::optional<Box> free = top_is_near ? std::nullopt : free_place(above, left_px_, taken, curves);
-      if (!free) {
-        free = free_place(below, left_px_, taken, curves);
-      }
-      if (free) {
-        text.x_px = free->right_px;
-        text.y_px = free->bottom_px - 3.0;
-        names.push_back(*free);
-      } else if (outside) {
-        text.x_px = outside->left_px;
-        text.y_px = outside->bottom_px - 0.24 * kLimitStyle.size_px;
-        text.anchor = Anchor::left;
-        names.push_back(*outside);
-      } else {  // a name on a curve or a level is readable, on another name it is not
-        std::optional<Box> readable = free_place(top_is_near ? below : above, left_px_, taken, {});
-        for (Box lower = below; !readable && lower.bottom_px < vertical.low_px;) {
-          readable = free_place(lower, left_px_, names, {});
-          lower.top_px += kLimitStyle.size_px + 2.0;
-          lower.bottom_px += kLimitStyle.size_px + 2.0;
-        }
-        names.push_back(readable.value_or(below));
-        text.x_px = names.back().right_px;
-        text.y_px = names.back().bottom_px - 3.0;
-      }
-      add(std::move(text));
     }
   }
 

@@ -12,6 +12,9 @@ namespace heatsoak::report {
 
 enum class Anchor { left, middle, right };
 
+/// Ground behind a text on top of curves: none, a white outline of its letters, or a white rectangle that hides what is behind it.
+enum class Ground { none, rim, plate };
+
 /// One line of text; `y_px` is its baseline.
 struct PlacedText {
   std::string text;
@@ -20,7 +23,7 @@ struct PlacedText {
   TextStyle style;
   Anchor anchor = Anchor::left;
   bool is_upright = false;  ///< rotated, reads from bottom to top
-  bool has_rim = false;     ///< white outline, for text on top of curves
+  Ground ground = Ground::none;
 };
 
 /// The colour and line sample in front of a legend name; `y_px` is its vertical centre.
