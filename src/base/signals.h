@@ -91,6 +91,7 @@ struct UnstatedByDuty {
 struct SignalRow {
   std::string_view name;              ///< in messages with spaces: "shaft power"
   std::optional<Signal> signal = {};  ///< signal that it needs in a log
+  std::string_view meaning = {};      ///< description for `heatsoak describe`, with sign and kind of mean
   std::string_view unit = {};         ///< UDUNITS text
   std::optional<double> usual = {};   ///< value of a hot motor under load, in `unit`; none: the default
   AveragingRule averaging = AveragingRule::mean;
@@ -135,6 +136,7 @@ inline constexpr std::size_t kSignalCount = 0
 #include "base/signal_table.h"
 ;
 // clang-format on
+static_assert(std::ranges::none_of(kSignals, &std::string_view::empty, &SignalRow::meaning), "each row has a description");
 static_assert(std::ranges::count_if(kSignals, [](const SignalRow& each) { return each.signal && !each.column.empty(); }) == kSignalCount,
               "each signal has one log column");
 

@@ -1,4 +1,4 @@
-// Documents of `describe`: motors, robots, duties, effects, thresholds, verdicts and the drive core.
+// Documents of `describe`: motors, robots, duties, effects, thresholds, verdicts and the drive core. Signals: signal_topics.h.
 #pragma once
 
 #include <optional>

@@ -74,6 +74,7 @@ const std::vector<ListedKind>& kinds() {
       {"effects", rows_of<effect_topics>},
       {"formats", formats},
       {"thresholds", rows_of<threshold_topics>},
+      {"signals", rows_of<signal_topics>},
       {"topics", rows_of<all_topics>, {&input::DataFolders::motors, &input::DataFolders::robots, &input::DataFolders::duties}}};
   return all;
 }

@@ -13,6 +13,7 @@
 #include "present/description.h"
 #include "present/description_json.h"
 #include "present/outside_effects_registry.h"
+#include "present/signal_topics.h"
 #include "robot/robot.h"
 #include "thermal/effect.h"
 
@@ -110,7 +111,7 @@ TopicList threshold_topics(const input::DataFolders& /*folders*/) {
 
 TopicList all_topics(const input::DataFolders& folders) {
   TopicList topics;
-  for (const auto& some : {motor_topics, robot_topics, duty_topics, effect_topics, threshold_topics}) {
+  for (const auto& some : {motor_topics, robot_topics, duty_topics, effect_topics, threshold_topics, signal_topics}) {
     std::ranges::move(some(folders), std::back_inserter(topics));
   }
   for (const duty::ShapeType& shape : duty::all_shapes()) {
@@ -118,6 +119,7 @@ TopicList all_topics(const input::DataFolders& folders) {
   }
   topics.push_back({"verdict", [] { return "meaning of pass, marginal, fail, infeasible and undecided"; },
                     [] { return described(verdict_description(), verdict_json()); }});
+  topics.push_back({"signals", [] { return "unit, log column, averaging rule and worst case of every signal"; }, signals_description});
   topics.push_back({std::string(kCoreTopic), [] { return "the blocks of the drive core and their signals"; },
                     [] { return described(core_description(), core_json()); }});
   return topics;
@@ -140,6 +142,9 @@ Document description_of(const std::string& name, const input::DataFolders& folde
   if (std::optional<Document> verdict = one_verdict_description(name)) {
     return *std::move(verdict);
   }
+  if (const base::SignalRow* row = signal_of_column(name)) {
+    return signal_description(*row);
+  }
   if (name == "motors" || name == "robots" || name == "duties" || name == "effects") {
     throw base::Failure(
         base::ExitCode::bad_input,
@@ -149,7 +154,7 @@ Document description_of(const std::string& name, const input::DataFolders& folde
   std::ranges::transform(topics, std::back_inserter(known), &Topic::id);
   throw base::Failure(
       base::ExitCode::bad_input,
-      fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds and verdict{} (`heatsoak list "
+      fmt::format("there is no '{}' among motors, robots, duties, shapes, effects, thresholds, signals and verdict{} (`heatsoak list "
                   "topics` shows the names)",
                   name, base::did_you_mean(name, known)));
 }

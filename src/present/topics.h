@@ -24,14 +24,16 @@ TopicList duty_topics(const input::DataFolders& folders);
 /// Returns the effects of the thermal network, then those of src/present/outside_effects.
 TopicList effect_topics(const input::DataFolders& folders);
 TopicList threshold_topics(const input::DataFolders& folders);
-/// Returns all of the above, duty shapes, the verdicts and the drive core. Ids are unique.
+/// Returns the signals of base/signal_table.h, except one that has the name of an effect.
+TopicList signal_topics(const input::DataFolders& folders);
+/// Returns all of the above, duty shapes, the verdicts, the table of signals and the drive core. Ids are unique.
 TopicList all_topics(const input::DataFolders& folders);
 
 /// Returns the document with the JSON as its data, in the schema heatsoak.describe/1.
 Document described(Document document, const Json& json);
 
-/// Describes the topic of this id, or the motor, robot or duty in a file whose name ends in .toml. Throws Failure (bad_input) for an
-/// unknown id, with "did you mean", and for a file with problems.
+/// Describes the topic of this id, the signal of a log column, or the motor, robot or duty in a file whose name ends in .toml. Throws
+/// Failure (bad_input) for an unknown id, with "did you mean", and for a file with problems.
 Document description_of(const std::string& name, const input::DataFolders& folders);
 
 /// Id of the drive core's topic, whose block diagram can be drawn.

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/diagnostic.h"
+#include "base/signals.h"
 #include "present/list.h"
 #include "present/renderer.h"
 #include "report/chart.h"
@@ -54,6 +55,51 @@ TEST(Topics, AMisspeltNameIsAnsweredWithASimilarOne) {
     EXPECT_THAT(failure.what(), HasSubstr("did you mean 'windage'"));
     EXPECT_THAT(failure.what(), HasSubstr("`heatsoak list topics` shows the names"));
   }
+  try {
+    static_cast<void>(description_of("vehicle_sped", kShippedFolders));
+    FAIL();
+  } catch (const base::Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("did you mean 'vehicle_speed'"));
+  }
+}
+
+std::string labelled(const Table& table, std::string_view label) {
+  for (const std::vector<Text>& row : table.rows) {
+    if (row.front().words == label) {
+      return row.back().words;
+    }
+  }
+  return "";
+}
+
+TEST(Topics, ASignalIsDescribedFromItsRow) {
+  const Document document = description_of("vehicle_speed", kShippedFolders);
+  const Table& table = document.tables.front();
+  EXPECT_EQ(labelled(table, "unit"), "m/s");
+  EXPECT_THAT(labelled(table, "log column"), HasSubstr("vehicle_speed_m_per_s"));
+  EXPECT_EQ(labelled(table, "averaging"), "mean of an interval");
+  EXPECT_EQ(labelled(table, "default"), "0 m/s");
+  EXPECT_THAT(labelled(table, "worst case"), HasSubstr("heats winding and bodies most"));
+  EXPECT_THAT(labelled(table, "needed by"), HasSubstr("vehicle_airflow"));
+  EXPECT_EQ(document.data.at("log_column"), "vehicle_speed_m_per_s");
+  EXPECT_THAT(labelled(description_of("age", kShippedFolders).tables.front(), "worst case"), HasSubstr("from 0.01 h to 100000 h"));
+  EXPECT_EQ(labelled(description_of("copper_loss", kShippedFolders).tables.front(), "averaging"), "") << "the effect of this name";
+}
+
+TEST(Topics, EverySignalIsInTheirTable) {
+  const Document document = description_of("signals", kShippedFolders);
+  const std::vector<std::vector<Text>>& rows = document.tables.front().rows;
+  ASSERT_EQ(rows.size(), base::kSignals.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].front().words, base::kSignals[i].name);
+    EXPECT_EQ(description_of(std::string(base::kSignals[i].name), kShippedFolders).data.at("id"), base::kSignals[i].name);
+  }
+}
+
+TEST(Topics, ALogColumnIsDescribedAsItsSignal) {
+  EXPECT_EQ(description_of("torque_Nm", kShippedFolders).data.at("id"), "shaft_power");
+  EXPECT_EQ(description_of("duty_ratio", kShippedFolders).data.at("id"), "modulation") << "the earlier name";
+  EXPECT_THROW(static_cast<void>(description_of("", kShippedFolders)), base::Failure);
 }
 
 TEST(List, EachKindHasItsRowsInTableAndData) {

@@ -27,7 +27,7 @@ base::ExitCode run(const std::string& name, const std::string& diagram, Session&
 
 Command describe() {
   return {.name = {},
-          .summary = "Describes a motor, robot, duty, duty shape, effect, threshold or verdict: values with origin, equations, sources",
+          .summary = "Describes a motor, robot, duty, shape, effect, threshold, signal or verdict: values with origin, equations, sources",
           .example = "heatsoak describe maxon_ecx_flat_32l_48v",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto name = std::make_shared<std::string>();

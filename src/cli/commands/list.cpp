@@ -32,7 +32,7 @@ std::vector<present::TableOutput> table_outputs(const CLI::App& program) {
 
 Command list() {
   return {.name = {},
-          .summary = "Lists motors, robots, duties, effects, formats, thresholds of checks, or topics of describe",
+          .summary = "Lists motors, robots, duties, effects, formats, thresholds of checks, signals, or topics of describe",
           .example = "heatsoak list motors",
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto kind = std::make_shared<std::string>();
