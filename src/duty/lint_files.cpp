@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "duty/duty.h"
 #include "duty/file_kind.h"
@@ -97,7 +98,8 @@ FilesLint lint_files(std::span<const std::string> names, const input::DataFolder
   }
   for (const std::string& file : result.files) {
     try {
-      const std::vector<motor::LintFinding> found = look_into(file, folders);
+      std::vector<motor::LintFinding> found = look_into(file, folders);
+      std::ranges::stable_sort(found, {}, [](const motor::LintFinding& each) { return std::tuple(each.at.line, each.at.column); });
       result.findings.insert(result.findings.end(), found.begin(), found.end());
     } catch (const base::Failure& failure) {
       unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
@@ -106,6 +108,7 @@ FilesLint lint_files(std::span<const std::string> names, const input::DataFolder
   if (!unreadable.empty() || !unknown.empty()) {
     throw base::Failure(base::ExitCode::bad_input, std::move(unknown), std::move(unreadable));
   }
+  std::ranges::stable_sort(result.findings, {}, &motor::LintFinding::level);
   return result;
 }
 

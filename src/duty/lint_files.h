@@ -12,7 +12,7 @@ namespace heatsoak::duty {
 
 struct FilesLint {
   std::vector<std::string> files;            ///< checked files
-  std::vector<motor::LintFinding> findings;  ///< in the order of the files
+  std::vector<motor::LintFinding> findings;  ///< errors, then warnings, then notes; each in the order of files and lines
 
   [[nodiscard]] std::size_t count(motor::LintFinding::Level level) const;
 };

@@ -45,7 +45,8 @@ struct Table {
 struct Listing {
   std::string title = {};  ///< may be empty
   std::string lines = {};
-  bool is_prose = false;  ///< a terminal may break long lines at blanks
+  bool is_prose = false;        ///< a terminal may break long lines at blanks
+  bool precedes_notes = false;  ///< shown before the notes, because it states more serious findings; else last
 };
 
 /// Severity of a note, in ascending order.
@@ -68,7 +69,7 @@ struct Document {
   std::vector<Table> tables = {};
   std::vector<Note> notes = {};
   std::vector<std::string> files = {};     ///< names of the written files; cli::Session sets them
-  std::vector<Listing> listings = {};      ///< shown last
+  std::vector<Listing> listings = {};      ///< shown last, or before the notes
   std::vector<report::Chart> charts = {};  ///< only HTML contains them
   Json data = {};                          ///< the same answer for other programs; begins with the key "schema"
 

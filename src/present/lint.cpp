@@ -19,7 +19,7 @@ Document lint_document(const duty::FilesLint& lint) {
                                                                      warnings == 1 ? "" : "s")),
                                   is_sound ? Tone::good : Tone::bad}},
                     .paragraphs = {}};
-  Listing listing{.title = {}, .lines = {}, .is_prose = true};
+  Listing listing{.title = {}, .lines = {}, .is_prose = true, .precedes_notes = true};
   std::vector<std::string> on_estimates;
   for (const motor::LintFinding& each : lint.findings) {
     if (each.level != motor::LintFinding::Level::note) {

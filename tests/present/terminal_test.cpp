@@ -124,6 +124,19 @@ TEST(Terminal, lines_to_copy_come_last_and_whole) {
   EXPECT_THAT(terminal_text(document, {.width = 80, .is_terminal = false}), HasSubstr("xx and more words\n"));
 }
 
+// Errors of files are listed before notes in every form of the answer.
+TEST(Terminal, lines_of_serious_findings_precede_the_notes) {
+  Document document = example();
+  document.listings = {{.title = "", .lines = "m.toml:3:1: error: wrong\n", .precedes_notes = true}};
+  for (const std::string& text :
+       {terminal_text(document, {.width = 80}), rendered_for("x.html", document), rendered_for("x.md", document)}) {
+    const std::size_t lines = text.find("m.toml:3:1: error: wrong\n");
+    ASSERT_NE(lines, std::string::npos) << text;
+    EXPECT_LT(lines, text.find("urgent")) << text;
+    EXPECT_EQ(text.find("m.toml:3:1", lines + 1), std::string::npos) << "twice";
+  }
+}
+
 TEST(Html, holds_everything_and_escapes_it) {
   Document document = example();
   document.tables[0].rows[0][1] = {"<b>&"};

@@ -79,6 +79,17 @@ std::string table_of(const Table& table) {
   return text + "</table>\n";
 }
 
+std::string listings_in_html(const std::vector<Listing>& listings, bool before_notes) {
+  std::string text;
+  for (const Listing& listing : listings) {
+    if (listing.precedes_notes == before_notes) {
+      text += listing.title.empty() ? "" : fmt::format("<h2>{}</h2>\n", in_html(listing.title));
+      text += fmt::format("<pre>{}</pre>\n", base::xml_text(listing.lines));
+    }
+  }
+  return text;
+}
+
 std::string render_html(const Document& document, const RenderOptions& /*options*/) {
   std::string text =
       fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>\n<body>\n",
@@ -96,6 +107,7 @@ std::string render_html(const Document& document, const RenderOptions& /*options
   for (const Table& table : document.tables) {
     text += table_of(table);
   }
+  text += listings_in_html(document.listings, true);
   const std::vector<Note> notes = notes_with_legends(document);
   text += notes.empty() ? "" : "<ul>\n";
   for (const Note& note : notes) {
@@ -105,10 +117,7 @@ std::string render_html(const Document& document, const RenderOptions& /*options
   for (const std::string& file : document.files) {
     text += fmt::format("<p>written: {}</p>\n", in_html(file));
   }
-  for (const Listing& listing : document.listings) {
-    text += listing.title.empty() ? "" : fmt::format("<h2>{}</h2>\n", in_html(listing.title));
-    text += fmt::format("<pre>{}</pre>\n", base::xml_text(listing.lines));
-  }
+  text += listings_in_html(document.listings, false);
   return text + "</body>\n</html>\n";
 }
 

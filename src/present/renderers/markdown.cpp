@@ -37,6 +37,17 @@ std::string text_of(const Table& table) {
   return text + "\n";
 }
 
+std::string listings_in_markdown(const std::vector<Listing>& listings, bool before_notes) {
+  std::string text;
+  for (const Listing& listing : listings) {
+    if (listing.precedes_notes == before_notes) {
+      text += listing.title.empty() ? "" : fmt::format("\n{}\n", escaped(listing.title));
+      text += fmt::format("\n```\n{}{}```\n", listing.lines, listing.lines.ends_with('\n') ? "" : "\n");
+    }
+  }
+  return text;
+}
+
 std::string render_markdown(const Document& document, const RenderOptions& /*options*/) {
   std::string text;
   for (const Text& sentence : document.headline) {
@@ -48,16 +59,16 @@ std::string render_markdown(const Document& document, const RenderOptions& /*opt
   for (const Table& table : document.tables) {
     text += text_of(table);
   }
+  if (const std::string listings = listings_in_markdown(document.listings, true); !listings.empty()) {
+    text += listings + "\n";
+  }
   for (const Note& note : notes_with_legends(document)) {
     text += fmt::format("- {}{}\n", note.severity == Severity::warning ? "warning: " : "", escaped(note.words));
   }
   for (const std::string& file : document.files) {
     text += fmt::format("\nwritten: {}\n", escaped(file));
   }
-  for (const Listing& listing : document.listings) {
-    text += listing.title.empty() ? "" : fmt::format("\n{}\n", escaped(listing.title));
-    text += fmt::format("\n```\n{}{}```\n", listing.lines, listing.lines.ends_with('\n') ? "" : "\n");
-  }
+  text += listings_in_markdown(document.listings, false);
   return text;
 }
 

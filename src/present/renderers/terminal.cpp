@@ -259,6 +259,14 @@ std::string render_terminal(const Document& document, const RenderOptions& given
   for (const Table& table : document.tables) {
     add_block(text_of(table, options));
   }
+  const auto add_listings = [&](bool before_notes) {
+    for (const Listing& listing : document.listings) {
+      if (listing.precedes_notes == before_notes) {
+        add_block(text_of(listing, options));
+      }
+    }
+  };
+  add_listings(true);
   std::vector<Note> notes = document.notes;
   for (const Table& table : document.tables) {
     if (std::string legend = legend_of(table, shown_columns(table, widths_of(table), options.width)); !legend.empty()) {
@@ -269,9 +277,7 @@ std::string render_terminal(const Document& document, const RenderOptions& given
   for (const std::string& file : document.files) {
     text += wrapped(printable(file), "written: ", options.width) + "\n";
   }
-  for (const Listing& listing : document.listings) {
-    add_block(text_of(listing, options));
-  }
+  add_listings(false);
   return text;
 }
 
