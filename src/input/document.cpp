@@ -167,7 +167,7 @@ base::Location place_of(const std::filesystem::path& path, std::string_view key)
       key.remove_prefix(std::min(dot + 1, key.size()));
     }
   } catch (const base::Failure&) {
-    // The file cannot be parsed: the position then has no line.
+    // Callers report a problem of their own here; a broken file is reported by whoever reads its values.
   }
   return place;
 }

@@ -35,7 +35,7 @@ std::string_view to_string(Value::Kind kind);
 /// table or 16 dots per key.
 Value read_toml(const std::filesystem::path& path);
 
-/// Returns the position of a dotted key, or of the last table on its path that exists. Line 0 if the file cannot be read.
+/// Returns the position of a dotted key, or of the last table on its path that exists. If the file cannot be read or parsed, it has no line.
 base::Location place_of(const std::filesystem::path& path, std::string_view key);
 
 /// Like read_toml() for a text in memory; `file` is its name in messages.

@@ -145,7 +145,10 @@ void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answe
                   {"verdict", "", 0, Alignment::left},
                   {"winding peak", "°C", 0},
                   {"stator peak", "°C", 2},
-                  {"guard limits", "s", 1},
+                  {.name = "guard limits",
+                   .unit = "s",
+                   .priority = 1,
+                   .meaning = "time in which the thermal guard would have limited a motor (here it limits nothing)"},
                   {"error", "mm rms", 3},
                   {"driven", "m", 4}}};
   for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -169,9 +172,8 @@ void add_closed_loop(Document& document, const simulate::EvaluationAnswer& answe
   add_difference(document, answer);
   document.add_note(
       Severity::background,
-      "The closed loop uses nominal motors, noisy, delayed sensors, lost packets, slip and a sagging battery; the other table uses "
-      "the torque that an exactly followed plan needs, with tolerances. guard limits: time in which the thermal "
-      "guard would have limited a motor; it limits nothing here.");
+      "The closed loop has nominal motors, noisy and delayed sensors, lost packets, slip and a sagging battery. The other table has the "
+      "torque that an exactly followed plan needs, with tolerances.");
 }
 
 }  // namespace heatsoak::present

@@ -88,6 +88,18 @@ Document command_limits_description() {
   return document;
 }
 
+namespace {
+
+Table undecided_table() {
+  Table table = labelled_table("Undecided verdicts");
+  for (const UndecidedDetail& each : undecided_details()) {
+    add_labelled(table, each.label, each.words);
+  }
+  return table;
+}
+
+}  // namespace
+
 Document verdict_description() {
   Document document{.headline = {{fmt::format(
                         "verdict: the result of `evaluate` for a motor on a duty. From the best to the worst: pass; marginal (more than "
@@ -101,6 +113,7 @@ Document verdict_description() {
   }
   add_labelled(table, "undecided", undecided_meaning());
   document.tables.push_back(std::move(table));
+  document.tables.push_back(undecided_table());
   document.add_note(
       Severity::note,
       "Without --closed-loop the robot follows the plan exactly. If the plan needs more grip than the wheels have in 1 % of the "
@@ -121,6 +134,9 @@ std::optional<Document> one_verdict_description(std::string_view name) {
     return std::nullopt;
   }
   Document document{.headline = {{fmt::format("{}: a verdict of `evaluate` on a motor", name)}}, .paragraphs = {found->second}};
+  if (name == "undecided") {
+    document.tables.push_back(undecided_table());
+  }
   document.add_note(Severity::scope, "`heatsoak describe verdict` explains all verdicts.");
   return described(std::move(document), {{"kind", "verdict"}, {"id", name}, {"meaning", found->second}});
 }

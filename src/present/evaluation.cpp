@@ -295,7 +295,7 @@ std::string sparkline(const select::MotorEvaluation& motor, double ambient_C) {
 
 namespace {
 
-/// States the rest of a hot motor.
+/// States the rest of a hot motor; returns nothing if it can play on at once.
 std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const std::string& motor_id, double ambient_C) {
   if (rests.front().over_without_current) {
     return fmt::format(
@@ -303,15 +303,23 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
         ambient_C);
   }
   std::string text;
-  for (const select::RestOfHotMotor& each : rests) {
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    const select::RestOfHotMotor& each = rests[i];
+    // Of equal rests the one with the longest play states the most.
+    const bool is_repeated = i + 1 < rests.size() && each.all_s && rests[i + 1].all_s == each.all_s;
+    if (is_repeated || each.all_s == 0.0) {
+      continue;
+    }
     const std::string play = duration_text(each.play_s);
-    text += each.all_s ? fmt::format(" {} of rest for {} of play;", duration_text(*each.all_s), play)
-                       : fmt::format(" for {} of play, more than {} of rest at {} of {} moments of the duty;", play,
-                                     duration_text(select::kLongestRest_s), each.starts_never, each.starts);
+    text += each.all_s ? fmt::format(" {} for {} of play;", duration_text(*each.all_s), play)
+                       : fmt::format(" more than {} for {} of play, at {} of {} moments of the duty;",
+                                     duration_text(select::kLongestRest_s), play, each.starts_never, each.starts);
+  }
+  if (text.empty()) {
+    return text;
   }
   text.back() = '.';
-  return fmt::format("A {} at its temperature limit needs a rest before it can play on without exceeding a limit (nominal values):{}",
-                     motor_id, text);
+  return fmt::format("A {} at its temperature limit must rest before it can play on within its limits (nominal values):{}", motor_id, text);
 }
 
 /// Returns the ranking by samples with its notes.
@@ -336,7 +344,7 @@ Document ranking_document(const simulate::EvaluationAnswer& answer) {
   document.add_note(Severity::background, fmt::format("The load is {}.", answer.duty.origin));
   for (const auto& [id, rests] : answer.rests) {
     if (id == results.front().motor_id || id == answer.robot.drive.motor) {
-      document.add_note(Severity::background, rest_words(rests, id, answer.duty.ambient_C.value));
+      add_lines(document.notes, rest_words(rests, id, answer.duty.ambient_C.value), Severity::background);
     }
   }
   if (answer.draw_count == 0 && results.front().samples > 0) {

@@ -31,26 +31,38 @@ std::vector<VerdictMeaning> verdict_meanings() {
 }
 
 std::string undecided_meaning() {
-  const int most = select::most_samples(false);
   return fmt::format(
-      "The interval of the share of samples over a limit contains the threshold of two verdicts ({rare:.0f} %, and {majority:.0f} % on a "
-      "duty that is drawn). Without --samples the program doubles the samples of undecided motors up to {doublings} times: to {most}, or "
-      "to {games} games on a duty that is drawn, where it stops earlier if a decision has become improbable (less than {least:.0f} %). The "
-      "answer then states with how many samples the verdict is decided with a probability of {even:.0f} % and of {likely:.0f} %; to "
-      "continue, give --samples one "
-      "of these numbers. The interval allows for the repeated tests: the first may err with a probability of {first:.1f} %, each later one "
-      "with {later:.2f} %, so a verdict is wrong with a probability of at most {wrong:.0f} % (Clopper and Pearson 1934; alpha spending, "
-      "Jennison and Turnbull 2000). Samples of one game count as one. Until the verdict is decided, JSON states marginal, whatever the "
-      "number of samples, and the key decided is false; if one of fail and infeasible is certain and only the other is open, it states the "
-      "certain one. The exit code follows the worst verdict that the interval allows. Without any samples (--samples 0) the answer says "
-      "within, over or short for the nominal motor; decided is false, and JSON states marginal in place of pass, because nothing is known "
-      "about the tolerances.",
-      fmt::arg("rare", 100.0 * select::kMarginalProbability), fmt::arg("majority", 100.0 * select::kMajority),
-      fmt::arg("doublings", select::kMostDoublings), fmt::arg("most", most), fmt::arg("games", select::most_samples(true) / base::kLanes),
-      fmt::arg("even", 100.0 * select::kEvenDecision_share), fmt::arg("likely", 100.0 * select::kLikelyDecision_share),
-      fmt::arg("least", 100.0 * select::kLeastDecision_share),
-      fmt::arg("first", 100.0 * select::error_share(select::first_samples(false), false)),
-      fmt::arg("later", 100.0 * select::error_share(most, false)), fmt::arg("wrong", 100.0 * select::kError_share));
+      "More samples are needed. The interval of the share of samples that exceed a limit or miss the demand contains the threshold of two "
+      "verdicts: {:.0f} %, or {:.0f} % on a duty that is drawn.",
+      100.0 * select::kMarginalProbability, 100.0 * select::kMajority);
+}
+
+std::vector<UndecidedDetail> undecided_details() {
+  const int most = select::most_samples(false);
+  return {
+      {"samples",
+       fmt::format(
+           "Without --samples the program doubles the samples of undecided motors up to {} times: to {}, or to {} games on a duty "
+           "that is drawn. On such a duty it stops earlier if a decision has become improbable (less than {:.0f} %). Samples of one "
+           "game count as one.",
+           select::kMostDoublings, most, select::most_samples(true) / base::kLanes, 100.0 * select::kLeastDecision_share)},
+      {"to continue",
+       fmt::format("The answer states the numbers of samples that decide the verdict with a probability of {:.0f} % and of {:.0f} %. Give "
+                   "--samples one of them.",
+                   100.0 * select::kEvenDecision_share, 100.0 * select::kLikelyDecision_share)},
+      {"errors",
+       fmt::format(
+           "A verdict is wrong with a probability of at most {:.0f} %. The intervals allow for the repeated tests: the first may err "
+           "with {:.1f} %, each later one with {:.2f} % (Clopper and Pearson 1934; alpha spending, Jennison and Turnbull 2000).",
+           100.0 * select::kError_share, 100.0 * select::error_share(select::first_samples(false), false),
+           100.0 * select::error_share(most, false))},
+      {"JSON",
+       "The key verdict is marginal and the key decided is false. If one of fail and infeasible is certain and only the other is open, "
+       "verdict is the certain one."},
+      {"exit code", "It follows the worst verdict that the interval allows."},
+      {"--samples 0",
+       "There is no verdict, because nothing is known about the tolerances. The answer states within, over or short for the nominal motor. "
+       "In JSON, decided is false, and verdict is marginal in place of pass."}};
 }
 
 }  // namespace heatsoak::present

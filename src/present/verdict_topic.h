@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "select/evaluate.h"
@@ -15,7 +16,14 @@ struct VerdictMeaning {
 /// Returns the verdicts from best to worst.
 std::vector<VerdictMeaning> verdict_meanings();
 
-/// Explains when a verdict is reported as undecided.
+/// States when a verdict is reported as undecided.
 std::string undecided_meaning();
+
+/// One fact about undecided verdicts, such as how many samples are drawn.
+struct UndecidedDetail {
+  std::string_view label;
+  std::string words;
+};
+std::vector<UndecidedDetail> undecided_details();
 
 }  // namespace heatsoak::present

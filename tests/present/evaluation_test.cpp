@@ -12,11 +12,10 @@
 
 #include "base/binomial_bound.h"
 #include "base/lanes.h"
+#include "evaluation_answers.h"
 #include "present/renderer.h"
-#include "present/verdict_topic.h"
 #include "present/verdict_words.h"
 #include "select/decision.h"
-#include "support/shipped.h"
 
 namespace heatsoak::present {
 namespace {
@@ -24,147 +23,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-select::MotorEvaluation sampled(double probability, select::Interval95 interval, int samples) {
-  select::MotorEvaluation motor;
-  motor.samples = samples;
-  motor.probability_over_limit = probability;
-  motor.probability_interval = interval;
-  motor.short_interval = select::Interval95{0.0, 0.01};
-  return motor;
-}
-
-TEST(SamplesNeeded, nothing_where_the_interval_covers_no_threshold) {
-  EXPECT_FALSE(select::samples_needed(sampled(0.01, {0.005, 0.02}, 500), false));
-  EXPECT_FALSE(select::samples_needed(sampled(0.2, {0.17, 0.24}, 500), false));
-  EXPECT_FALSE(select::samples_needed(sampled(0.04, {0.02, 0.06}, 0), false)) << "nominal values alone decide";
-}
-
-// With the same share and the error of that look, the returned number of samples decides, and one less does not.
-TEST(SamplesNeeded, is_the_smallest_number_that_decides) {
-  for (const auto& [share, is_drawn] : {std::pair(0.04, false), std::pair(0.07, false), std::pair(0.03, true), std::pair(0.08, true)}) {
-    const int per_draw = is_drawn ? 8 : 1;
-    const std::optional<int> needed = select::samples_needed(sampled(share, {0.02, 0.11}, 600), is_drawn);
-    ASSERT_TRUE(needed);
-    EXPECT_EQ(*needed % per_draw, 0);
-    const auto decides = [&, share = share, is_drawn = is_drawn](int draws) {
-      const base::ShareInterval then = base::share_interval(share, draws, select::error_share(draws, is_drawn));
-      return then.low > select::kMarginalProbability || then.high <= select::kMarginalProbability;
-    };
-    EXPECT_TRUE(decides(*needed / per_draw)) << share;
-    EXPECT_FALSE(decides(*needed / per_draw - 1)) << share;
-  }
-}
-
-// (1 - 0.05)^n is at most the error of the first look, 0.025, from n = 72 on.
-TEST(SamplesNeeded, without_a_hit_it_is_that_of_the_binomial_law) {
-  EXPECT_EQ(*select::samples_needed(sampled(0.0, {0.0, 0.31}, 80), true), 72 * 8);
-}
-
-// The program doubles the first number at most five times. Two further looks remain for users who request more.
-TEST(SamplesNeeded, all_looks_together_err_with_5_percent_at_most) {
-  for (const auto& [first, is_drawn] : {std::pair(75, true), std::pair(500, false)}) {
-    double total = 0.0;
-    for (int look = 0; look < 8; ++look) {
-      total += select::error_share(first << look, is_drawn);
-    }
-    EXPECT_LE(total, 0.05 + 1e-12);
-    EXPECT_GE(total, 0.049);
-  }
-}
-
-// 500 samples and 75 games, doubled five times; half of 5 % for the first look, a seventh of the other half for each later one.
-TEST(VerdictTopic, states_the_numbers_of_the_decision) {
-  EXPECT_THAT(undecided_meaning(),
-              testing::AllOf(HasSubstr("up to 5 times: to 16000, or to 2400 games"), HasSubstr("(less than 20 %)"),
-                             HasSubstr("probability of 2.5 %, each later one with 0.36 %"), HasSubstr("a probability of at most 5 %")));
-}
-
-TEST(SamplesNeeded, majority_counts_where_the_duty_is_drawn) {
-  EXPECT_FALSE(select::samples_needed(sampled(0.48, {0.4, 0.55}, 80), false));
-  EXPECT_TRUE(select::samples_needed(sampled(0.48, {0.4, 0.55}, 80), true));
-}
-
-TEST(SamplesNeeded, demand_that_is_missed_counts_too) {
-  select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
-  motor.short_probability = 0.05;
-  motor.short_interval = select::Interval95{0.03, 0.07};
-  EXPECT_TRUE(select::samples_needed(motor, false));
-}
-
-// Every verdict that more samples could change is shown as undecided, also that of a motor without enough current.
-TEST(ShownVerdict, is_undecided_until_more_samples_would_not_change_it) {
-  select::MotorEvaluation motor = sampled(0.9, {0.8, 0.99}, 600);
-  EXPECT_EQ(shown_verdict(motor), ShownVerdict::pass);
-  motor.samples_needed = 4352;
-  EXPECT_EQ(shown_verdict(motor), ShownVerdict::undecided);
-  motor.verdict = select::Verdict::infeasible;
-  EXPECT_EQ(shown_verdict(motor), ShownVerdict::undecided);
-  motor.samples_needed = {};
-  EXPECT_EQ(shown_verdict(motor), ShownVerdict::infeasible);
-}
-
-// The nominal motor alone gives no verdict, so no word of a verdict describes it.
-TEST(ShownVerdict, has_other_words_without_samples) {
-  std::set<std::string_view> verdicts;
-  std::set<std::string_view> nominal;
-  for (const auto verdict : {select::Verdict::pass, select::Verdict::fail, select::Verdict::infeasible}) {
-    for (const int samples : {0, 600}) {
-      select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, samples);
-      motor.verdict = verdict;
-      (samples > 0 ? verdicts : nominal).insert(to_string(shown_verdict(motor)));
-    }
-  }
-  EXPECT_EQ(nominal.size(), 3U);
-  for (const std::string_view word : nominal) {
-    EXPECT_FALSE(verdicts.contains(word)) << word;
-  }
-}
-
-TEST(OpenShare, is_the_share_whose_interval_covers_a_threshold) {
-  select::MotorEvaluation motor = sampled(0.9, {0.88, 1.0}, 600);
-  motor.games = 75;
-  motor.verdict = select::Verdict::infeasible;
-  motor.short_probability = 0.55;
-  motor.short_interval = select::Interval95{0.42, 0.68};
-  EXPECT_FALSE(open_share(motor)) << "decided";
-  motor.samples_needed = 4352;
-  ASSERT_TRUE(open_share(motor));
-  EXPECT_TRUE(open_share(motor)->is_of_demand);
-  EXPECT_EQ(open_share(motor)->threshold_ratio, select::kMajority);
-  select::MotorEvaluation warm = sampled(0.03, {0.01, 0.11}, 600);
-  warm.games = 75;
-  warm.samples_needed = 1200;
-  ASSERT_TRUE(open_share(warm));
-  EXPECT_FALSE(open_share(warm)->is_of_demand);
-  EXPECT_EQ(open_share(warm)->threshold_ratio, select::kMarginalProbability);
-  EXPECT_EQ(words_of(*open_share(warm), 600), "18 of 600 samples exceed a limit (share 1…11 %; the verdict changes at 5 %)");
-}
-
-TEST(PassingText, agrees_in_number) {
-  EXPECT_EQ(passing_text(1, 1, "motor"), "1 of 1 motor passes");
-  EXPECT_EQ(passing_text(0, 1, "motor"), "0 of 1 motor passes");
-  EXPECT_EQ(passing_text(1, 2, "motor"), "1 of 2 motors passes");
-  EXPECT_EQ(passing_text(0, 2, "motor"), "0 of 2 motors pass");
-}
-
-simulate::EvaluationAnswer answer_with(std::vector<select::MotorEvaluation> results, const std::string& duty = "paper_intermittent") {
-  for (select::MotorEvaluation& each : results) {
-    each.winding_p95_interval_C = each.winding_p95_interval_C.value_or(select::Interval95{40.0, 50.0});
-  }
-  simulate::EvaluationAnswer answer{.robot = twente(),
-                                    .duty = duty::read_duty(kSource / "duty_profiles" / (duty + ".toml")),
-                                    .motors = {},
-                                    .conditions = {},
-                                    .demand = {},
-                                    .results = std::move(results),
-                                    .rests = {},
-                                    .closed_loop = {},
-                                    .ranks = {},
-                                    .changes = {}};
-  answer.robot.drive.current_limit_A = 4.0;  // some motors here are limited by it
-  return answer;
-}
 
 // Both columns of limits have a unit, and no two columns the same name.
 TEST(EvaluationDocument, columns_have_different_names) {
@@ -223,22 +81,38 @@ TEST(EvaluationDocument, a_closed_loop_states_the_difference_of_a_motor_whose_cu
   }
 }
 
-TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
+/// Returns the sentences about the rest of a hot motor "m" after plays of 60 s, 5 min and 20 min.
+std::vector<std::string> rest_notes(const std::vector<std::optional<double>>& rests_s) {
   select::MotorEvaluation motor = sampled(0.0, {0.0, 0.01}, 500);
   motor.motor_id = "m";
   simulate::EvaluationAnswer answer = answer_with({motor});
-  answer.rests["m"] = {{.play_s = 60.0, .half_s = 0.0, .all_s = 13.0, .starts = 4, .starts_never = 0},
-                       {.play_s = 300.0, .half_s = {}, .all_s = {}, .starts = 4, .starts_never = 3}};
+  for (std::size_t i = 0; i < rests_s.size(); ++i) {
+    answer.rests["m"].push_back({.play_s = select::kPlays_s.at(i), .half_s = {}, .all_s = rests_s[i], .starts = 4, .starts_never = 3});
+  }
   answer.rests["other"] = answer.rests["m"];
   std::vector<std::string> rests;
   for (const Note& each : evaluation_document(answer).notes) {
-    if (each.words.find("needs a rest") != std::string::npos) {
+    if (each.words.find("temperature limit must rest") != std::string::npos) {
       EXPECT_EQ(each.severity, Severity::background);
       rests.push_back(each.words);
     }
   }
-  EXPECT_THAT(rests, testing::ElementsAre(AllOf(HasSubstr("A m at its temperature limit"), HasSubstr("13 s of rest for 60 s of play;"),
-                                                HasSubstr("for 5 min of play, more than 60 min of rest at 3 of 4 moments of the duty."))));
+  return rests;
+}
+
+TEST(EvaluationDocument, states_the_rest_of_a_hot_motor_in_the_background) {
+  EXPECT_THAT(
+      rest_notes({13.0, 40.0, {}}),
+      testing::ElementsAre("A m at its temperature limit must rest before it can play on within its limits (nominal values): 13 s "
+                           "for 60 s of play; 40 s for 5 min of play; more than 60 min for 20 min of play, at 3 of 4 moments of the "
+                           "duty."));
+}
+
+TEST(EvaluationDocument, states_equal_rests_once_and_no_rest_of_0_s) {
+  EXPECT_THAT(rest_notes({0.0, 2.0, 2.0}), testing::ElementsAre(testing::EndsWith("(nominal values): 2 s for 20 min of play.")));
+  EXPECT_THAT(rest_notes({2.0, 2.0, 9.0}),
+              testing::ElementsAre(testing::EndsWith("(nominal values): 2 s for 5 min of play; 9 s for 20 min of play.")));
+  EXPECT_THAT(rest_notes({0.0, 0.0, 0.0}), testing::IsEmpty());
 }
 
 TEST(EvaluationDocument, states_that_no_rest_helps_a_motor_that_is_over_its_limit_without_current) {
@@ -482,16 +356,6 @@ TEST(EvaluationDocument, a_closed_loop_without_samples_names_nominal_values) {
   const Document document = evaluation_document(answer);
   EXPECT_THAT(document.tables.back().title, HasSubstr("with nominal values"));
   EXPECT_THAT(document.paragraphs.front(), Not(HasSubstr("with all tolerances")));
-}
-
-TEST(VerdictTopic, states_the_thresholds_that_decide) {
-  const std::vector<VerdictMeaning> all = verdict_meanings();
-  ASSERT_EQ(all.size(), 4U);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].verdict, static_cast<select::Verdict>(i));
-  }
-  EXPECT_THAT(all[0].meaning, HasSubstr("At most 5 % of the samples exceed a limit"));
-  EXPECT_THAT(all[2].meaning, HasSubstr("more than 50 % of the samples"));
 }
 
 }  // namespace

@@ -29,9 +29,8 @@ TEST(WordsOfFriction, Suspicions) {
        "31 % of the wheels' speeds fit no motion of the robot: do their order or signs differ from the robot's file?"},
       {VoltageFallsWithSpeed{}, "voltage falls as the wheels turn faster: does one of them have the wrong sign?"},
       {DampingDiffersFromBackEmf{9.5},
-       "the fitted voltage per speed (d) is 9.5 times the back-EMF of the motor, expected 1 to 2 times: is a speed in rpm or that of the "
-       "wheel instead of its motor, a "
-       "modulation in percent, a voltage in millivolts or too high, or is it another motor?"},
+       "d (voltage per speed) is 9.5 times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or of the wheel, a modulation in "
+       "percent, a voltage in millivolts, or is it another motor?"},
       {MoreWheelsThanRobot{4, 3}, "the log has values of wheel 4, but the robot's file has 3 wheels: is it the log of another robot?"},
       {WheelWithoutVoltage{2}, "wheel 2 turns with hardly any voltage: is its modulation missing from the log?"},
       {WheelVoltageFallsWithSpeed{2}, "voltage of wheel 2 falls as it turns faster: does its speed or its modulation have the wrong sign?"},

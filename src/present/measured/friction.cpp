@@ -70,16 +70,18 @@ void add_given_values(Document& document, const friction::FrictionFit& fit) {
     }
     document.add_note(
         Severity::note,
-        fmt::format("d (given) is the motor's back-EMF from its file, because the legs do not determine d. The intervals hold for this d "
-                    "only: a d 10 % larger takes {} from a; legs at a second speed on the same headings determine both.",
-                    fmt::join(moves, ", ")));
+        fmt::format(
+            "The intervals hold only for the given d, the motor's back-EMF from its file. A d 10 % larger makes a smaller by {}. Legs "
+            "at a second speed on the same headings determine both.",
+            fmt::join(moves, ", ")));
   }
   if (std::ranges::any_of(fit.wheels, &friction::WheelFriction::phase_is_given)) {
     document.add_note(
         Severity::note,
-        fmt::format("phase (given) is a wheel's rolling direction, because its headings are too few to determine it; the intervals allow "
-                    "for {:.0f}° to either side; six or more directions all around determine it.",
-                    friction::FitSettings{}.phase_uncertainty_rad * kDegrees));
+        fmt::format(
+            "The given phase is the wheel's rolling direction; the intervals allow for {:.0f}° to either side. The headings are too "
+            "few to determine it. Six or more directions all around determine it.",
+            friction::FitSettings{}.phase_uncertainty_rad * kDegrees));
   }
 }
 

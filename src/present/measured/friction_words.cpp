@@ -71,9 +71,8 @@ std::string say(const friction::VoltageFallsWithSpeed& /*of*/) {
 
 std::string say(const friction::DampingDiffersFromBackEmf& of) {
   return fmt::format(
-      "the fitted voltage per speed (d) is {} times the back-EMF of the motor, expected 1 to 2 times: is a speed in rpm or that of the "
-      "wheel "
-      "instead of its motor, a modulation in percent, a voltage in millivolts or too high, or is it another motor?",
+      "d (voltage per speed) is {} times the motor's back-EMF, expected 1 to 2 times: is a speed in rpm or of the wheel, a modulation in "
+      "percent, a voltage in millivolts, or is it another motor?",
       base::significant(of.ratio, 2));
 }
 
