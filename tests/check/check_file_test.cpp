@@ -1,57 +1,17 @@
 // Check files: results, the report of all mistakes in one pass, and limits that are rewritten in place.
-#include "check/check_file.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include "base/files.h"
-#include "check/check_job.h"
 #include "check/rewrite.h"
 #include "check/typed_outcome.h"
-#include "support/shipped_folders.h"
+#include "check_files.h"
 
 namespace heatsoak::check {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-const std::string kHead =
-    "[[check]]\nname = \"paper\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_42m_24v\"\n";
-
-class CheckFiles : public testing::Test {
- protected:
-  CheckFiles() { fs::create_directory(folder_); }
-  ~CheckFiles() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] CheckFile read(const std::string& text) const {
-    base::write_file(folder_ / "a.check.toml", text);
-    return read_check_file(folder_ / "a.check.toml", kShippedFolders);
-  }
-  [[nodiscard]] std::string message_of(const std::string& text) const {
-    try {
-      static_cast<void>(read(text));
-    } catch (const base::Failure& failure) {
-      return failure.what();
-    }
-    return "nothing was wrong";
-  }
-  [[nodiscard]] CheckJob job_of(const std::string& text, int threads = 1) const {
-    base::write_file(folder_ / "a.check.toml", text);
-    return {.files = {(folder_ / "a.check.toml").string()}, .threads = threads};
-  }
-  /// Returns the outcomes of the text. They point into `answer_`.
-  [[nodiscard]] std::vector<Outcome> outcomes(const std::string& text) {
-    answer_ = run_check_job(job_of(text), kShippedFolders);
-    return answer_.outcomes;
-  }
-
-  fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("heatsoak_check_{}", static_cast<int>(getpid()));
-  CheckAnswer answer_;
-};
 
 TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
   const std::string said = message_of(
@@ -78,37 +38,6 @@ TEST_F(CheckFiles, ReportEveryProblemAtItsPlace) {
                            "rank needs 'against' in this check", ":12:1: error: check[1].limits: is missing",
                            ":13:8: error: check[1].name: \"a\" is the name of another", ":14:1: error: surprise: is not a key"}) {
     EXPECT_THAT(said, HasSubstr(each));
-  }
-}
-
-// A limit outside the possible range is a typing mistake and is rejected.
-TEST_F(CheckFiles, SenselessLimitsAreRefusedAtTheirPlace) {
-  const std::string said = message_of(kHead +
-                                      "[check.limits]\n"                               // 6
-                                      "winding_peak_p95 = \"at most 70 K\"\n"          // 7
-                                      "stator_peak_p95 = \"at most -400 degC\"\n"      // 8
-                                      "rank = \"at most 1.5\"\n"                       // 9
-                                      "current_margin = \"at least 1e30 A\"\n"         // 10
-                                      "lint_problems = \"at most 0.5\"\n"              // 11
-                                      "time_above = \"at most 1e30 s\"\n"              // 12
-                                      "derating_excess = \"at most 1e30 A\"\n"         // 13
-                                      "core_size = \"at most 1e30 byte\"\n"            // 14
-                                      "guard_missing_charge = \"at most 1e30 A s\"\n"  // 15
-                                      "winding_peak_p95_ = \"at most 1\"\n");
-  const int first = 1 + static_cast<int>(std::ranges::count(kHead, '\n'));
-  const std::vector<std::string> expected{
-      "winding_peak_p95: \"at most 70 K\" is an absolute temperature, -203 °C; expected \"at most 70 degC\"",
-      "stator_peak_p95: \"at most -400 degC\" is out",
-      "rank: \"at most 1.5\" is not a whole number",
-      "current_margin: \"at least 1e30 A\" is out of range",
-      "lint_problems: \"at most 0.5\" is not a whole number",
-      "time_above: \"at most 1e30 s\" is out",
-      "derating_excess: \"at most 1e30 A\" is out",
-      "core_size: \"at most 1e30 byte\" is out",
-      "guard_missing_charge: \"at most 1e30 A s\" is out"};
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_THAT(said, testing::ContainsRegex(fmt::format("a.check.toml:{}:[0-9]+: error: ", first + 1 + static_cast<int>(i))));
-    EXPECT_THAT(said, HasSubstr(expected[i]));
   }
 }
 
@@ -345,68 +274,6 @@ TEST_F(CheckFiles, NewLimitsChangeNothingElse) {
   EXPECT_TRUE(again[0].passed());
   EXPECT_TRUE(again[1].passed());
   EXPECT_EQ(with_new_limits(after, again, 0.05), after);
-}
-
-// A limit that always holds, or that is above the motor's own, is useless as a threshold.
-TEST_F(CheckFiles, LimitsLooserThanTheMotorsOwnAreRefused) {
-  const std::string message = message_of(
-      "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"paper_intermittent\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"
-      "against = [\"maxon_ecx_flat_42m_24v\", \"nanotec_df45l024048_a2\"]\n[check.limits]\nwinding_peak_p95 = \"at most 156 degC\"\n"
-      "rank = \"at most 3\"\nprobability_over_limit = \"at most 100 %\"\ncurrent_margin = \"at least -0.1 A\"\n");
-  EXPECT_THAT(message, HasSubstr("\"at most 156 degC\" is looser than the motor's own winding limit, 155.0 °C"));
-  EXPECT_THAT(message, HasSubstr("\"at most 3\" is looser than the number of motors in 'against', 2"));
-  EXPECT_THAT(message, HasSubstr("\"at most 100 %\" is looser than the largest share that a limit may permit, 99.9 %"));
-  EXPECT_THAT(message, HasSubstr("\"at least -0.1 A\" is looser than the motor's own limits, 0 A"));
-}
-
-// A guard that limits nearly all the time is no harmless one. "at most 0 %" means not for one period.
-TEST_F(CheckFiles, GuardThatLimitsForMostOfTheMatchIsRefusedAsALimit) {
-  const auto message = [&](const std::string& limit) {
-    return message_of(
-        "[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nduty = \"division_a_match\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n"
-        "[check.limits]\nguard_active_share = \"" +
-        limit + "\"\n");
-  };
-  EXPECT_THAT(message("at most 99.9 %"), HasSubstr("\"at most 99.9 %\" is looser than half of the match, 50 %"));
-  EXPECT_EQ(message("at most 50 %"), "nothing was wrong");
-  EXPECT_EQ(message("at most 0 %"), "nothing was wrong");
-}
-
-TEST_F(CheckFiles, TimeAboveLongerThanTheDutyIsRefused) {
-  const auto message = [&](const std::string& limit) {
-    return message_of(kHead + "temperature = \"100 degC\"\n[check.limits]\ntime_above = \"at most " + limit + "\"\n");
-  };
-  EXPECT_THAT(message("2401 s"),
-              HasSubstr(":8:14: error: check[0].limits.time_above: \"at most 2401 s\" holds always: the duration of the duty is 2400 s"));
-  EXPECT_THAT(message("2400 s"), HasSubstr("\"at most 2400 s\" holds always"));
-  EXPECT_THAT(message("40 min"), HasSubstr("\"at most 40 min\" holds always"));
-  EXPECT_EQ(message("2399 s"), "nothing was wrong");
-}
-
-// Each bound follows from the motor, the duty or the program.
-TEST_F(CheckFiles, LimitsThatCannotFailAreRefused) {
-  const auto message = [&](const std::string& settings, const std::string& limit) {
-    return message_of("[[check]]\nname = \"x\"\nrobot = \"roboteam_twente_v2024\"\nmotor = \"maxon_ecx_flat_32l_48v\"\n" + settings +
-                      "[check.limits]\n" + limit + "\n");
-  };
-  const std::string paper = "duty = \"paper_intermittent\"\n";
-  EXPECT_THAT(message(paper, "stator_peak_p95 = \"at most 900 degC\""), HasSubstr("which the stator must not exceed either, 155.0 °C"));
-  EXPECT_EQ(message(paper, "stator_peak_p95 = \"at most 155 degC\""), "nothing was wrong");
-  EXPECT_THAT(message(paper + "temperature = \"156 degC\"\n", "time_above = \"at most 60 s\""),
-              HasSubstr("'temperature' is 156.0 °C, the limit 155.0 °C; expected a 'temperature' up to that limit"));
-  EXPECT_THAT(message(paper, "guard_missing_charge = \"at most 1e6 A s\""),
-              HasSubstr("holds always: the largest current of all wheels during the whole duty is"));
-  EXPECT_THAT(message("", "lint_problems = \"at most 10000\""), HasSubstr("holds always: the number of values in a complete motor file"));
-  EXPECT_EQ(message("", "lint_problems = \"at most 3\""), "nothing was wrong");
-  EXPECT_THAT(message("", "core_size = \"at most 900 kbyte\""),
-              HasSubstr("is looser than twice the code of the drive core with the largest guard table"));
-  EXPECT_EQ(message("", "core_size = \"at most 410 kbyte\""), "nothing was wrong");
-}
-
-TEST_F(CheckFiles, ABareNumberAsLimitIsAnsweredWithTheLimit) {
-  const std::string message = message_of(kHead + "[check.limits]\nwinding_peak_p95 = 70\nprobability_over_limit = 5\n");
-  EXPECT_THAT(message, HasSubstr("winding_peak_p95: 70 is a bare number; expected a limit as text, such as \"at most 70 degC\""));
-  EXPECT_THAT(message, HasSubstr("probability_over_limit: 5 is a bare number; expected a limit as text, such as \"at most 5 %\""));
 }
 
 TEST_F(CheckFiles, RankOfAMotorAgainstItselfIsRefused) {
