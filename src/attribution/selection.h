@@ -84,7 +84,7 @@ struct Refusal {
   bool operator==(const Refusal&) const = default;
 };
 
-/// Result of the selection.
+/// Effects that the runs show, with the fits before and after they were added to the model.
 struct Selection {
   estimation::Posterior before;  ///< fit of the model's own parameters, without effects
   estimation::Posterior after;

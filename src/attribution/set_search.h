@@ -29,7 +29,7 @@ struct EffectSet {
   double probability = 0.0;
 };
 
-/// Linear evidence for several assumptions about the unknown heat (points).
+/// Searches the sets of effects with the highest linear evidence. A point is one assumption about the size of the unknown heat.
 class SetSearch {
  public:
   /// Solution for a set, at one point.

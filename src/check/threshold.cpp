@@ -23,8 +23,8 @@ std::span<const SettingText> all_settings() {
       {"map", "mapping of the logs' columns; LOG.map.toml beside a log is found automatically"},
       {"air", "air temperature of a log that has none"},
       {"derate",
-       "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; for a committed C header with a sensor also "
-       "thermistor, winding_resistance and their options with \"_\" for \"-\"; its own values unless given"},
+       "options of `derate`: ambient, coldest, approach, period, confidence, samples, seed; those of `derate` itself unless given. For a "
+       "committed C header with a sensor also thermistor, winding_resistance and their options with \"_\" for \"-\""},
       {"command", "command of this program, \"simulate --motor M --robot R --duty D\"; the limits are on numbers of its JSON answer"},
   }};
   return kSettings;

@@ -10,9 +10,7 @@
 #include "cli/command.h"
 
 namespace heatsoak::cli {
-namespace {
 
-/// Returns "a", "b" for a type name such as "G:{a,b}", the CLI11 notation of a set.
 std::vector<std::string> choices_of(const std::string& type) {
   const std::size_t begin = type.find('{');
   const std::size_t end = type.find('}', begin);
@@ -21,6 +19,8 @@ std::vector<std::string> choices_of(const std::string& type) {
   }
   return CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
 }
+
+namespace {
 
 HelpOption option_of(const CLI::Option& option) {
   HelpOption result;

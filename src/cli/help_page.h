@@ -26,6 +26,9 @@ struct HelpPage {
   std::vector<std::string> examples;
 };
 
+/// Returns "a", "b" for a type name such as "G:{a,b}", the CLI11 notation of a set; nothing for another type name.
+std::vector<std::string> choices_of(const std::string& type);
+
 /// Returns the help pages of all commands, sorted by name.
 std::vector<HelpPage> help_pages(const CLI::App& program);
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <tuple>
 
+#include "cli/help_page.h"
 #include "input/data_folders.h"
 
 namespace heatsoak::cli {
@@ -45,7 +46,12 @@ std::string name_of(const CLI::Option& option) {
 
 /// Returns what is missing and what it is for; empty if the option is given or not needed.
 std::string missing_words(const CLI::Option& option) {
-  return option.get_required() && option.count() == 0 ? fmt::format("{} is required: {}", name_of(option), option.get_description()) : "";
+  if (!option.get_required() || option.count() > 0) {
+    return "";
+  }
+  const std::vector<std::string> choices = choices_of(option.get_type_name());
+  return fmt::format("{} is required: {}{}", name_of(option), option.get_description(),
+                     choices.empty() ? "" : fmt::format("; expected one of {}", fmt::join(choices, ", ")));
 }
 
 /// Rewrites CLI11's complaint about a word that is none of a set: "kind: duty not in {motor,robot}".

@@ -107,8 +107,8 @@ void require_short_period(const thermal::Network& network, const robot::Robot& r
   const std::string reason =
       longest_s < 0.1 * rules.approach_s && !is_limited
           ? fmt::format(
-                ". The robot has no current_limit, so a current of {:.3g} A counts, which the battery can drive through this motor "
-                "and which heats the winding that fast; state the limit of its motor driver as [drive] current_limit",
+                ". The robot has no current_limit, and its battery can drive {:.3g} A through this motor, which heats the winding that "
+                "fast. State the limit of its motor driver as [drive] current_limit",
                 rules.most_current_A)
           : std::string();
   if (options.period_s > longest_s || options.period_s > 0.1 * rules.approach_s) {

@@ -132,7 +132,7 @@ struct ImportReport {
   std::uint64_t frames_of_other_sources = 0;
   std::uint64_t detections = 0;
   std::uint64_t merged = 0;              ///< merged with a detection of another camera
-  std::uint64_t doubled = 0;             ///< same robot twice in a frame of a camera: the better one is used
+  std::uint64_t doubled = 0;             ///< second detections of a robot in one frame of a camera; the better one is used
   std::uint64_t implausible = 0;         ///< invalid number or id, outside any field, or reported as not visible
   std::uint64_t outliers = 0;            ///< too far from the expected position
   std::uint64_t out_of_order = 0;        ///< time not after the previous detection

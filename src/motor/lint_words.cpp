@@ -95,11 +95,11 @@ constexpr std::array kSentences = std::to_array<Sentence>({
      "that "
      "power at its nominal voltage; use torque and speed instead"},
     {LintWords::nominal_speed_too_high,
-     "{} is listed, but from {} without load {} through {} leave at most {} even with cold copper, expected at most 3 % more; check "
-     "resistance (between terminals?), nominal torque and speed"},
+     "{} is listed, but from {} without load a torque of {} at {} leaves at most {}, even with cold copper; expected at most 3 % more; "
+     "check resistance (between terminals?), nominal torque and speed"},
     {LintWords::nominal_speed_too_low,
-     "{} is listed, but from {} without load {} through {} leave at least {} with hot copper and commutation of {}, expected at most 3 % "
-     "less; {}"},
+     "{} is listed, but from {} without load a torque of {} at {} leaves at least {}, with hot copper and commutation of {}; expected at "
+     "most 3 % less; {}"},
     {LintWords::resistance_needed, "it would take {}: check resistance, nominal torque and speed"},
     {LintWords::resistance_of_one_phase,
      "it would take {}, about twice as much: if the resistance is that of one phase, set conventions.terminal_resistance = "

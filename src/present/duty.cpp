@@ -61,7 +61,7 @@ Document document_of(const duty::DutyAnswer& answer, const duty::GeneratedMatch&
   const duty::Duty& duty = *answer.duty;
   const robot::Robot& robot = answer.robot;
   const duty::MatchLoad& load = match.load;
-  Document document{.headline = {{fmt::format("{} of {} as {}: {}, {:.0f} s of them play, {:.2f} km.", duty.id, robot.id,
+  Document document{.headline = {{fmt::format("{} of {} as {}: {} with {:.0f} s of play, {:.2f} km.", duty.id, robot.id,
                                               duty::kRoleNames.at(static_cast<std::size_t>(match.role)), duration_text(load.duration_s),
                                               load.play_s, load.distance_m / 1e3)}},
                     .paragraphs = {fmt::format("Seed {}. The load is {}.", match.seed, duty.origin)},

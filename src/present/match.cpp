@@ -119,14 +119,15 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
   }
   for (const simulate::DrivenMatch& each : answer.runs) {
     const simulate::DriveScore& score = each.run.score;
-    const std::string what = answer.guard_use == simulate::GuardUse::on
-                                 ? fmt::format("limited a motor for {:.1f} s", score.guard_limited_s)
-                                 : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s", score.guard_limited_s,
-                                               score.guard_missing_A_s);
+    const bool is_on = answer.guard_use == simulate::GuardUse::on;
+    const std::string what = score.guard_limited_s == 0.0 ? fmt::format("{}limited no motor in", is_on ? "" : "would have ")
+                             : is_on                      ? fmt::format("limited a motor for {:.1f} s of", score.guard_limited_s)
+                                     : fmt::format("would have limited a motor for {:.1f} s and taken away {:.1f} A s of",
+                                                   score.guard_limited_s, score.guard_missing_A_s);
     document.add_note(
         Severity::note,
         fmt::format(
-            "thermal guard ({}), {}: {} of {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C",
+            "thermal guard ({}), {}: {} {}; its observer, with air of {:.0f} °C and its safety factor on heat, reached {:.0f} °C",
             simulate::kGuardUses[static_cast<std::size_t>(answer.guard_use)], duty::to_string(each.planner), what,
             duration_text(score.time_s),
             answer.is_sensing_ideal ? answer.duty.ambient_C.value : static_cast<double>(answer.guard.guard->model().hottest_ambient_C),

@@ -1,4 +1,5 @@
 // First steps of a new user: templates, pictures, terminals, interrupted commands.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -174,8 +175,20 @@ TEST_F(FrontDoor, many_notes_of_lint_need_a_request) {
 
 TEST_F(FrontDoor, missing_and_unknown_words_are_explained) {
   EXPECT_THAT(run_here("heatsoak lint").err, HasSubstr("FILE is required: TOML files"));
+  EXPECT_THAT(run_here("heatsoak log").err, HasSubstr("action is required: action on the logs; expected one of inspect, convert\n"));
   EXPECT_THAT(run_here("heatsoak new duty a.toml").err, HasSubstr("'duty' is not known; expected motor, robot"));
   EXPECT_THAT(run_here("heatsoak generate cores --robot a --motor b --out c").err, HasSubstr("'cores' is not known; expected core"));
+}
+
+// A template that is not filled in is bad input, whatever it describes.
+TEST_F(FrontDoor, fresh_templates_are_bad_input) {
+  for (const std::string kind : {"motor", "robot"}) {
+    ASSERT_EQ(run_here(fmt::format("heatsoak new {0} {0}.toml", kind)).exit_code, 0);
+    const ProgramRun lint = run_here(fmt::format("heatsoak lint {}.toml", kind));
+    EXPECT_EQ(lint.exit_code, 2) << kind;
+    EXPECT_THAT(lint.err, HasSubstr(fmt::format("{}.toml:", kind)));
+    EXPECT_THAT(lint.err, HasSubstr("is still to be filled in"));
+  }
 }
 
 TEST_F(FrontDoor, new_replaces_no_file) {

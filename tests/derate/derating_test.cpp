@@ -352,7 +352,7 @@ TEST(Derate, NamesTheCurrentThatMakesAPeriodTooLong) {
     FAIL() << "no failure";
   } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.what(), HasSubstr("too long"));
-    EXPECT_THAT(failure.what(), HasSubstr("The robot has no current_limit, so a current of"));
+    EXPECT_THAT(failure.what(), HasSubstr("The robot has no current_limit, and its battery can drive"));
   }
 }
 
