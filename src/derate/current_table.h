@@ -82,7 +82,8 @@ struct TableGoal {
 };
 
 /// Computes a table for the goal. Adds breakpoints one by one, each on the axis where it reduces the largest shortfall most, and removes
-/// those that turn out to be unnecessary. Lowers heats until no point of a fine grid and of an independent set exceeds the exact current.
+/// those that turn out to be unnecessary. A table that misses the shortfall keeps no breakpoint without which it would miss it by no more.
+/// Lowers heats until no point of a fine grid and of an independent set exceeds the exact current.
 CurrentTable current_table(const Observer& observer, const BarrierRules& rules, const TableGoal& goal = {});
 
 }  // namespace heatsoak::derate

@@ -115,13 +115,9 @@ double square_of_A2(const CurrentTable& table, double current_A) {
   return current_A < table.straight_below_A ? current_A * table.straight_below_A : current_A * current_A;
 }
 
-/// Lowers cells that exceed the exact current at one of the points. Returns the largest relative shortfall at points where the exact
-/// current is at least straight_below_A.
-double check_table(CurrentTable& table, Barrier& barrier, const std::vector<CheckPoint>& points) {
-  std::vector<double> exact_A2;
-  for (const CheckPoint& at : points) {
-    exact_A2.push_back(barrier.square_A2(at.speed_rad_per_s, at.stator_C, at.winding_C));
-  }
+/// Lowers cells that exceed the exact current at one of the points, whose squared exact currents are `exact_A2`. Returns the largest
+/// relative shortfall at points where the exact current is at least straight_below_A.
+double check_table(CurrentTable& table, const std::vector<CheckPoint>& points, const std::vector<double>& exact_A2) {
   const auto exact_A = [&](std::size_t i) { return std::min(table.most_current_A, std::sqrt(std::max(0.0, exact_A2[i]))); };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CheckPoint& at = points[i];
@@ -144,6 +140,19 @@ double check_table(CurrentTable& table, Barrier& barrier, const std::vector<Chec
     }
   }
   return shortfall_ratio;
+}
+
+/// Lowers and rounds down the heats of a table from HeatPlaces until it keeps the exact current at all check points, and sets its
+/// shortfall.
+void verify(CurrentTable& table, Barrier& barrier, const BarrierRules& rules) {
+  const std::vector<CheckPoint> points = check_points(table, rules);
+  std::vector<double> exact_A2;
+  for (const CheckPoint& at : points) {
+    exact_A2.push_back(barrier.square_A2(at.speed_rad_per_s, at.stator_C, at.winding_C));
+  }
+  check_table(table, points, exact_A2);
+  round_down(table);
+  table.bound.shortfall_ratio = std::max(table.bound.shortfall_ratio, check_table(table, points, exact_A2));
 }
 
 /// Returns how many kelvins of the winding one kelvin of a stator above its axis must count as, so that the barrier holds: a power of 2, up
@@ -237,15 +246,13 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
   // Points between those of the fine grid show a slightly larger shortfall, so each attempt tightens the goal on the grid.
   constexpr int kMostTries = 6;
   constexpr double kBetter = 0.75;
+  const HeatPlaces places(table, barrier, rules);
   double grid_goal = 0.97 * goal.shortfall_ratio;
   std::optional<CurrentTable> best;
   for (int i = 0; i < kMostTries; ++i, grid_goal *= kBetter) {
-    place_heats(table, barrier, rules, {grid_goal, goal.most_bytes});
+    places.place(table, {grid_goal, goal.most_bytes});
     table.bound.is_limited_by_size = table.bound.shortfall_ratio > grid_goal;
-    const std::vector<CheckPoint> points = check_points(table, rules);
-    check_table(table, barrier, points);
-    round_down(table);
-    table.bound.shortfall_ratio = std::max(table.bound.shortfall_ratio, check_table(table, barrier, points));
+    verify(table, barrier, rules);
     if (!best || table.bound.shortfall_ratio < best->bound.shortfall_ratio) {
       best = table;
     }
@@ -254,6 +261,12 @@ CurrentTable current_table(const Observer& observer, const BarrierRules& rules, 
     }
   }
   table = *best;
+  if (const double reached_ratio = table.bound.shortfall_ratio; reached_ratio > goal.shortfall_ratio) {
+    places.remove(table, [&](CurrentTable& smaller) {
+      verify(smaller, barrier, rules);
+      return smaller.bound.shortfall_ratio <= reached_ratio;
+    });
+  }
   constexpr double kPerMillion = 1e6;
   table.bound.shortfall_ratio = std::ceil(kPerMillion * table.bound.shortfall_ratio) / kPerMillion;
   table.winding_per_stator_K = winding_per_stator_K(table, barrier, rules);

@@ -3,105 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 
+#include "derate/exact_grid.h"
+
 namespace heatsoak::derate {
 namespace {
-
-/// The winding's axis ends this far above the limit, because the barrier allows current to a winding that cools fast enough.
-constexpr double kAboveLimit_K = 3.0;
-
-enum Axis : std::size_t { speed, stator, winding, kAxes };
-using Index = std::array<std::size_t, kAxes>;
-using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< per axis of a table: indices of grid points, ascending
-
-/// Exact heats, as in CurrentTable, on a fine grid. Its points are the candidate breakpoints of a table.
-struct ExactGrid {
-  std::array<std::vector<double>, kAxes> points;
-  std::vector<double> heat_A2;          ///< [speed][stator][winding]
-  std::vector<double> square_per_heat;  ///< reciprocal of the resistance ratio at every point of the winding's axis
-  std::size_t limit = 0;                ///< index of the winding's limit on the winding's axis
-
-  [[nodiscard]] std::size_t place(const Index& at) const {
-    return (at[speed] * points[stator].size() + at[stator]) * points[winding].size() + at[winding];
-  }
-  /// Squared current at a place of the grid.
-  [[nodiscard]] double square_A2(std::size_t place) const { return heat_A2[place] * square_per_heat[place % points[winding].size()]; }
-};
-
-/// True if the exact current changes with the speed at any of nine pairs of temperatures.
-bool depends_on_speed(Barrier& barrier, const BarrierRules& rules) {
-  constexpr double kSame_ratio = 1e-6;
-  const double span_K = rules.limits.winding_C - rules.hottest_ambient_C;
-  for (const double stator_share : {0.1, 0.45, 0.95}) {
-    for (const double winding_share : {0.15, 0.6, 0.99}) {
-      const double stator_C = rules.hottest_ambient_C + stator_share * span_K;
-      const double winding_C = rules.hottest_ambient_C + winding_share * span_K;
-      const double standing_A2 = barrier.square_A2(0.0, stator_C, winding_C);
-      for (const double speed_share : {0.13, 0.37, 0.5, 0.81, 1.0}) {
-        const double square_A2 = barrier.square_A2(speed_share * rules.most_speed_rad_per_s, stator_C, winding_C);
-        if (std::abs(square_A2 - standing_A2) > kSame_ratio * std::abs(standing_A2)) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
-}
-
-/// Returns points from `low` to `high` in about `steps` equal steps; inner points are rounded to multiples of 0.5.
-std::vector<double> rounded_steps(double low, double high, int steps) {
-  std::vector<double> points = evenly(low, high, steps + 1);
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    points[i] = 0.5 * std::round(2.0 * points[i]);
-  }
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  std::erase_if(points, [&](double point) { return point < low || point > high; });
-  return points;
-}
-
-void add_near_end(std::vector<double>& points, std::initializer_list<double> below_K) {
-  const double end = points.back();
-  for (const double each_K : below_K) {
-    if (end - each_K > points.front()) {
-      points.push_back(end - each_K);
-    }
-  }
-  std::ranges::sort(points);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-}
-
-ExactGrid exact_grid(const CurrentTable& table, Barrier& barrier, const BarrierRules& rules) {
-  constexpr int kSpeedSteps = 10;
-  constexpr int kStatorSteps = 16;
-  constexpr int kWindingSteps = 40;
-  const double limit_C = rules.limits.winding_C;
-  const double coldest_C = std::min(rules.hottest_ambient_C, limit_C - 1.0);
-  ExactGrid grid;
-  grid.points[speed] = depends_on_speed(barrier, rules) ? rounded_steps(0.0, rules.most_speed_rad_per_s, kSpeedSteps) : std::vector{0.0};
-  const double last_stator_C = std::min(limit_C, rules.limits.stator_C.value_or(limit_C));
-  grid.points[stator] = rounded_steps(std::min(coldest_C, last_stator_C - 1.0), last_stator_C, kStatorSteps);
-  grid.points[winding] = rounded_steps(coldest_C, limit_C, kWindingSteps);
-  // Near the limits the current is small, so its relative error is large.
-  add_near_end(grid.points[stator], {3.0, 1.0});
-  add_near_end(grid.points[winding], {2.0, 1.0, 0.5});
-  grid.limit = grid.points[winding].size() - 1;
-  grid.points[winding].push_back(limit_C + kAboveLimit_K);
-  for (const double winding_C : grid.points[winding]) {
-    grid.square_per_heat.push_back(1.0 / table.resistance_ratio(winding_C));
-  }
-  for (const double speed_rad_per_s : grid.points[speed]) {
-    for (const double stator_C : grid.points[stator]) {
-      for (const double winding_C : grid.points[winding]) {
-        const double square_A2 = barrier.square_A2(speed_rad_per_s, stator_C, winding_C);
-        grid.heat_A2.push_back((winding_C > limit_C ? std::min(square_A2, 0.0) : square_A2) * table.resistance_ratio(winding_C));
-      }
-    }
-  }
-  return grid;
-}
 
 /// Rule by which a table turns squares into currents.
 struct CurrentRule {
@@ -444,12 +352,8 @@ class Search {
   std::vector<double> counted_A_;
 };
 
-}  // namespace
-
-void place_heats(CurrentTable& table, Barrier& barrier, const BarrierRules& rules, const TableGoal& goal) {
-  const ExactGrid grid = exact_grid(table, barrier, rules);
-  const Search search(grid, rules, goal);
-  const Fit fit = search.best();
+/// Writes axes, heats and shortfall of a fit to a table.
+void write(const Fit& fit, const ExactGrid& grid, CurrentTable& table) {
   const std::array axes{&table.speed_rad_per_s, &table.stator_C, &table.winding_C};
   for (const Axis axis : {speed, stator, winding}) {
     axes.at(axis)->clear();
@@ -460,8 +364,59 @@ void place_heats(CurrentTable& table, Barrier& barrier, const BarrierRules& rule
   // The stator's axis keeps its end even with one breakpoint, because allowed_A() needs it.
   table.stator_C.back() = grid.points[stator].back();
   table.heat_per_ohm_A2 = fit.heat_A2();
-  table.straight_below_A = search.straight_below_A();
   table.bound.shortfall_ratio = std::min(1.0, fit.shortfall_ratio());
+}
+
+/// Inverse of write(): an axis with one breakpoint has its first grid point.
+Places places_of(const CurrentTable& table, const ExactGrid& grid) {
+  const std::array axes{&table.speed_rad_per_s, &table.stator_C, &table.winding_C};
+  Places places;
+  for (const Axis axis : {speed, stator, winding}) {
+    for (const double point : *axes.at(axis)) {
+      const auto found = std::ranges::lower_bound(grid.points[axis], point);
+      places[axis].push_back(axes.at(axis)->size() == 1 ? 0 : static_cast<std::size_t>(found - grid.points[axis].begin()));
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+HeatPlaces::HeatPlaces(const CurrentTable& table, Barrier& barrier, const BarrierRules& rules)
+    : rules_(rules), grid_(std::make_unique<const ExactGrid>(exact_grid(table, barrier, rules))) {}
+
+HeatPlaces::~HeatPlaces() = default;
+
+void HeatPlaces::place(CurrentTable& table, const TableGoal& goal) const {
+  const Search search(*grid_, rules_, goal);
+  write(search.best(), *grid_, table);
+  table.straight_below_A = search.straight_below_A();
+}
+
+void HeatPlaces::remove(CurrentTable& table, const std::function<bool(CurrentTable&)>& is_good) const {
+  const CurrentRule rule{table.straight_below_A, rules_.most_current_A};
+  const std::vector<double> counted_A = counted_currents_A(*grid_, rule);
+  Places places = places_of(table, *grid_);
+  const auto try_without = [&](Axis axis, std::size_t which) {
+    Places fewer = places;
+    fewer[axis].erase(fewer[axis].begin() + static_cast<std::ptrdiff_t>(which));
+    CurrentTable tried = table;
+    write({*grid_, rule, counted_A, fewer, std::numeric_limits<double>::infinity()}, *grid_, tried);
+    const bool removes = is_good(tried);
+    if (removes) {
+      places = std::move(fewer);
+      table = std::move(tried);
+    }
+    return removes;
+  };
+  for (const Axis axis : {speed, stator, winding}) {
+    for (std::size_t i = 1; i + 1 < places[axis].size();) {
+      i += try_without(axis, i) ? 0 : 1;
+    }
+    if (places[axis].size() == 2 && axis != winding) {
+      try_without(axis, 1);
+    }
+  }
 }
 
 }  // namespace heatsoak::derate

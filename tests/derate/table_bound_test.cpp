@@ -159,6 +159,21 @@ TEST(TableBound, SizeAndErrorAreTradedAsAsked) {
   EXPECT_GT(small.bound.shortfall_ratio, 0.002);
 }
 
+// With an old or a fresh contact, whichever is hotter, the exact current has an edge, which no grid of breakpoints follows.
+TEST(TableBound, NoNumberIsStoredThatDoesNotLowerTheShortfall) {
+  const motor::Motor motor = ecx_32_with(effect_table(
+      "contact_ageing", estimated("conductance", "0.06 W/K") + estimated("time_constant", "10 h") + estimated("fresh_share", "1")));
+  const BarrierRules rules = rules_for(motor, approach_s(motor, DerateOptions()));
+  const thermal::Network network = motor::datasheet_network(motor, motor::nominal_sample(motor));
+  const Observer observer(network, motor.nominal, twente(), 1.6);
+  const CurrentTable fine = current_table(observer, rules, {.shortfall_ratio = 0.002});
+  ASSERT_GT(fine.bound.shortfall_ratio, 0.002) << "the example reaches the goal";
+  EXPECT_FALSE(fine.bound.is_limited_by_size);
+  const CurrentTable asked = current_table(observer, rules, {.shortfall_ratio = fine.bound.shortfall_ratio});
+  EXPECT_LE(fine.size_bytes(), asked.size_bytes());
+  EXPECT_LT(fine.size_bytes(), 200U);
+}
+
 /// Returns the smallest number of points for linear interpolation of the current, from 40 °C to the temperature with current `least_A`.
 /// Each line is as long as the goal allows. The current is concave there, so the lines stay below it.
 int places_of_straight_currents(Barrier& barrier, double stator_C, double least_A, double goal) {
