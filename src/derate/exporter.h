@@ -12,7 +12,7 @@ namespace heatsoak::derate {
 /// Heat at the highest speed that a format cannot express, with the safety factor.
 struct OmittedHeat {
   double loss_W = 0.0;
-  double rise_K = 0.0;  ///< steady rise of the stator over the air due to `loss_W`; the written model may be this much too cold
+  double rise_K = 0.0;  ///< by which the winding of the file is too cold if, with `loss_W` and a constant current, it is at its limit
   double speed_rad_per_s = 0.0;
 };
 

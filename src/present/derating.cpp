@@ -304,8 +304,9 @@ Document derating_document(const derate::DeratingJob& job, const derate::Deratin
   if (job.exporter && job.exporter->omitted) {
     const derate::OmittedHeat heat = job.exporter->omitted(answer.derating);
     document.headline.push_back(
-        {fmt::format("The winding in the {} file may be too cold: the format has no no-load loss ({:.1f} K at {:.0f} rad/s) and no heat "
-                     "capacity of the stator.",
+        {fmt::format("The winding in the {} file may be too cold: the format has no heat capacity of the stator and no no-load loss, which "
+                     "warms a winding at its limit by {:.1f} K at {:.0f} rad/s. The rise that the file states as its limit allows for the "
+                     "loss.",
                      job.exporter->name, heat.rise_K, heat.speed_rad_per_s),
          Tone::bad});
   }
