@@ -71,7 +71,7 @@ ExactGrid exact_grid(const CurrentTable& table, Barrier& barrier, const BarrierR
   grid.limit = grid.points[winding].size() - 1;
   grid.points[winding].push_back(limit_C + kAboveLimit_K);
   for (const double winding_C : grid.points[winding]) {
-    grid.square_per_heat.push_back(1.0 / table.resistance_ratio(winding_C));
+    grid.square_per_heat_ratio.push_back(1.0 / table.resistance_ratio(winding_C));
   }
   for (const double speed_rad_per_s : grid.points[speed]) {
     for (const double stator_C : grid.points[stator]) {

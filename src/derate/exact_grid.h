@@ -18,14 +18,14 @@ using Places = std::array<std::vector<std::size_t>, kAxes>;  ///< per axis of a 
 struct ExactGrid {
   std::array<std::vector<double>, kAxes> points;
   std::vector<double> heat_A2;          ///< [speed][stator][winding]
-  std::vector<double> square_per_heat;  ///< reciprocal of the resistance ratio at every point of the winding's axis
+  std::vector<double> square_per_heat_ratio;  ///< reciprocal of the resistance ratio at every point of the winding's axis
   std::size_t limit = 0;                ///< index of the winding's limit on the winding's axis
 
   [[nodiscard]] std::size_t place(const Index& at) const {
     return (at[speed] * points[stator].size() + at[stator]) * points[winding].size() + at[winding];
   }
   /// Squared current at a place of the grid.
-  [[nodiscard]] double square_A2(std::size_t place) const { return heat_A2[place] * square_per_heat[place % points[winding].size()]; }
+  [[nodiscard]] double square_A2(std::size_t place) const { return heat_A2[place] * square_per_heat_ratio[place % points[winding].size()]; }
 };
 
 /// Computes the grid of the barrier. `table` gives the resistance ratio.

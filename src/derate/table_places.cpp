@@ -164,7 +164,7 @@ class Fit {
     };
     double least_ratio = least_square_ratio();
     for_each_point(grid, corners(cell), at, [&](std::size_t place, double heat_A2, const Index& point) {
-      const double square_A2 = heat_A2 * grid.square_per_heat[point[winding]];
+      const double square_A2 = heat_A2 * grid.square_per_heat_ratio[point[winding]];
       // Most points are better than the worst one so far, which their squares show without a root.
       if (counted_A[place] == 0.0 || square_A2 >= std::max(straight_A2, least_ratio * counted_A[place] * counted_A[place])) {
         return;
