@@ -18,6 +18,7 @@
 #include "derate/c_header/c_text.h"
 #include "derate/exporter.h"
 #include "derate/integer_form/quantised_table.h"
+#include "derate/sampled_table.h"
 #include "input/csv.h"
 
 namespace heatsoak::derate {
@@ -339,10 +340,28 @@ void require_range(const CommittedTable& committed, std::string_view name, std::
   }
 }
 
-void compare_rows(const std::vector<CommittedRow>& rows, const CurrentTable& fresh, double tolerance_A, TableComparison& found) {
-  for (const CommittedRow& row : rows) {
-    const double fresh_A = fresh.allowed_A(row.speed_rad_per_s, row.stator_C, row.winding_C);
-    take_in(found, {std::abs(row.current_A - fresh_A), row.current_A, fresh_A, row.speed_rad_per_s, row.stator_C, row.winding_C},
+/// Returns the currents of a fresh CSV table if it has the same rows; else nothing.
+std::vector<double> fresh_rows_A(const std::vector<CommittedRow>& rows, const Derating& fresh) {
+  const SampledTable samples = sampled_table(fresh.table, fresh.rules.limits.winding_C);
+  const auto is_same = [&](const std::vector<double>& axis, double CommittedRow::*column) {
+    return snapped(axis_of(rows, column), axis) == axis;
+  };
+  const bool are_same = is_same(samples.speed_rad_per_s, &CommittedRow::speed_rad_per_s) &&
+                        is_same(samples.stator_C, &CommittedRow::stator_C) && is_same(samples.winding_C, &CommittedRow::winding_C);
+  return are_same ? samples.current_A : std::vector<double>();
+}
+
+void compare_rows(const std::vector<CommittedRow>& rows, const Derating& fresh, double tolerance_A, TableComparison& found) {
+  if (rows.empty()) {
+    return;
+  }
+  const std::vector<double> fresh_A = fresh_rows_A(rows, fresh);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const CommittedRow& row = rows[i];
+    const double table_A = fresh.table.allowed_A(row.speed_rad_per_s, row.stator_C, row.winding_C);
+    const bool is_lowered = !fresh_A.empty() && table_A - fresh_A[i] > tolerance_A;
+    const double expected_A = is_lowered ? fresh_A[i] : table_A;
+    take_in(found, {std::abs(row.current_A - expected_A), row.current_A, expected_A, row.speed_rad_per_s, row.stator_C, row.winding_C},
             tolerance_A);
   }
 }
@@ -437,9 +456,9 @@ TableComparison compare(const CommittedTable& committed, const Derating& fresh) 
     const double last_speed_rad_per_s = std::max(table.speed_rad_per_s.back(), table.no_current_speed_rad_per_s);
     require_range(committed, "speed", "rad/s", &CommittedRow::speed_rad_per_s, table.speed_rad_per_s.front(), last_speed_rad_per_s);
     require_range(committed, "stator", "°C", &CommittedRow::stator_C, table.stator_C.front(), table.stator_C.back());
-    require_range(committed, "winding", "°C", &CommittedRow::winding_C, table.winding_C.front(), table.winding_C.back());
+    require_range(committed, "winding", "°C", &CommittedRow::winding_C, table.winding_C.front(), fresh.rules.limits.winding_C);
   }
-  compare_rows(committed.rows, fresh.table, rounding_A, found);
+  compare_rows(committed.rows, fresh, rounding_A, found);
   if (!committed.code.empty()) {
     found.differing = differences(committed.code, fresh_header(fresh, committed.is_integer));
   }

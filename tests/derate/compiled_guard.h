@@ -87,6 +87,7 @@ class CompiledGuard {
 #include "guard.h"
 typedef struct { float current_A, speed_rad_per_s, ambient_C; } plain_input;
 typedef struct { float allowed_A, guarded_C, nominal_C, model_only_A; int reason, sensor; } plain_output;
+float model_allowed_A(float speed_rad_per_s, float stator_C, float winding_C) { return @_allowed_A(speed_rad_per_s, stator_C, winding_C); }
 int model_size(void) { return (int)sizeof(@_state); }
 void model_start(void *state, float body_C) { @_start(state, body_C); }
 void model_temperatures(const void *state, float *to) { memcpy(to, ((const @_state *)state)->state_C, sizeof ((const @_state *)state)->state_C); }

@@ -1,43 +1,36 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 
+#include "base/quantity.h"
 #include "derate/export_text.h"
 #include "derate/exporter.h"
+#include "derate/sampled_table.h"
 
 namespace heatsoak::derate::exporters {
 namespace {
 
-/// Returns the breakpoints of an axis with intermediate points at most `step` apart, so that linear interpolation between the rows follows
-/// the table.
-std::vector<double> sampled(const std::vector<double>& axis, double step) {
-  std::vector<double> points{axis.front()};
-  for (std::size_t i = 1; i < axis.size(); ++i) {
-    const auto parts = static_cast<int>(std::ceil((axis[i] - axis[i - 1]) / step));
-    const std::vector<double> between = evenly(axis[i - 1], axis[i], parts + 1);
-    points.insert(points.end(), between.begin() + 1, between.end());
-  }
-  return points;
-}
-
 std::string write_csv(const Derating& derating) {
-  constexpr double kStatorStep_K = 25.0;
-  constexpr double kWindingStep_K = 4.0;
-  const CurrentTable& table = derating.table;
   require_finite(derating);
-  std::vector<double> speeds = table.speed_rad_per_s;
-  for (const double last_rad_per_s : {table.most_speed_rad_per_s, table.no_current_speed_rad_per_s}) {
-    if (last_rad_per_s > speeds.back()) {
-      speeds.push_back(last_rad_per_s);
-    }
-  }
-  std::string text = provenance_lines(derating, "#") + "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n";
-  for (const double speed_rad_per_s : speeds) {
-    for (const double stator_C : sampled(table.stator_C, kStatorStep_K)) {
-      for (const double winding_C : sampled(table.winding_C, kWindingStep_K)) {
-        fmt::format_to(std::back_inserter(text), "{:.6g},{:.6g},{:.6g},{:.5g}\n", speed_rad_per_s, stator_C, winding_C,
-                       table.allowed_A(speed_rad_per_s, stator_C, winding_C));
+  const CurrentTable& table = derating.table;
+  const SampledTable samples = sampled_table(table, derating.rules.limits.winding_C);
+  std::string text =
+      provenance_lines(derating, "#") +
+      fmt::format(
+          "# Interpolate allowed_current_A linearly along the first three columns. The result is never above the table of the C header, "
+          "and\n"
+          "# at most {} % below it, from {} A up. Below the first value of a column use its first value.\n"
+          "# Above the last winding_C or speed_rad_per_s the current is 0. Each kelvin of the stator above the last stator_C counts as\n"
+          "# {:.6g} K of the winding.\n"
+          "speed_rad_per_s,stator_C,winding_C,allowed_current_A\n",
+          significant_above(100.0 * samples.shortfall_ratio, 2), base::significant(kCounted_ratio * table.straight_below_A, 3),
+          table.winding_per_stator_K);
+  std::size_t place = 0;
+  for (const double speed_rad_per_s : samples.speed_rad_per_s) {
+    for (const double stator_C : samples.stator_C) {
+      for (const double winding_C : samples.winding_C) {
+        fmt::format_to(std::back_inserter(text), "{:.9g},{:.9g},{:.9g},{:.9g}\n", speed_rad_per_s, stator_C, winding_C,
+                       samples.current_A[place++]);
       }
     }
   }
@@ -48,7 +41,7 @@ std::string write_csv(const Derating& derating) {
 
 ExporterType csv() {
   return {.name = {},
-          .summary = "the table, one grid point per row, for plots and other tools; lines that begin with # state its origin",
+          .summary = "the table as currents on a grid, for plots and other tools; lines that begin with # state its origin",
           .file_ending = ".csv",
           .write = write_csv};
 }
