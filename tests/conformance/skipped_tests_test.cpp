@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <regex>
 
 #include "program_run.h"
 #include "support/measured_data.h"
+#include "support/skip_reasons.h"
 #include "support/source_folder.h"
 
 namespace heatsoak {
@@ -99,6 +102,36 @@ TEST(SkippedTests, pass_in_ci_for_other_reasons_and_without_skips) {
   const ProgramRun none = list_skipped(log_of({{"base.A.passes", "[       OK ] A.passes (0 ms)\n"}}), "CI=true");
   EXPECT_EQ(none.exit_code, 0) << none.err;
   EXPECT_THAT(none.out, IsEmpty());
+}
+
+TEST(SkippedTests, for_want_of_a_consumer_name_it_once_and_the_command_that_runs_it) {
+  const std::string moteus = "/x/a.cpp:1: Skipped\n" HEATSOAK_LACKS_CONSUMER("moteus") "X is not set\n\n";
+  const std::string fmpy = "/x/b.cpp:1: Skipped\n" HEATSOAK_LACKS_CONSUMER("fmpy") "python3 has no fmpy\n\n";
+  const std::string log = log_of({{"derate.part_0", ran("A.a", moteus) + ran("B.b", fmpy) + ran("B.c", fmpy)}});
+  for (const char* const ci : {"CI", "CI=true"}) {
+    const ProgramRun listed = list_skipped(log, ci);
+    EXPECT_EQ(listed.exit_code, 0) << listed.err;
+    EXPECT_THAT(listed.out, testing::EndsWith("\nNot tested, because not installed: moteus fmpy. To install and run them: "
+                                              "tests/derate/consumers/run moteus fmpy\n"));
+  }
+  EXPECT_THAT(list_skipped(kLog, "CI").out, Not(HasSubstr("Not tested")));
+}
+
+// The script refuses a name that it does not know, and --help after the names ends it before it fetches anything.
+TEST(SkippedTests, name_consumers_that_the_script_installs) {
+  const std::filesystem::path tests = kSource / "tests/derate";
+  std::string names;
+  for (const std::filesystem::directory_entry& file : std::filesystem::directory_iterator(tests)) {
+    const std::string text = file.is_regular_file() ? content_of(file.path()) : std::string();
+    static const std::regex kName("HEATSOAK_LACKS_CONSUMER\\(\"(\\w+)\"\\)");
+    for (std::sregex_iterator found(text.begin(), text.end(), kName); found != std::sregex_iterator(); ++found) {
+      names += " " + (*found)[1].str();
+    }
+  }
+  EXPECT_THAT(names, HasSubstr("moteus"));
+  const ProgramRun known = run_line(fmt::format("'{}/consumers/run'{} --help", tests.string(), names));
+  EXPECT_EQ(known.exit_code, 0) << known.err;
+  EXPECT_EQ(run_line(fmt::format("'{}/consumers/run' no_such_consumer --help", tests.string())).exit_code, 2);
 }
 
 TEST(SkippedTests, need_a_log) {

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "exported_text.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -85,7 +86,7 @@ TEST_F(ConsumersScript, FailsIfATestIsSkippedFailsOrDoesNotExist) {
 TEST_F(VescConsumer, FirmwareHasEverySettingAndFunctionOfTheScript) {
   const fs::path sources = place_of("HEATSOAK_VESC_SOURCES");
   if (sources.empty()) {
-    GTEST_SKIP() << "HEATSOAK_VESC_SOURCES is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("vesc") "HEATSOAK_VESC_SOURCES is not set";
   }
   const std::string firmware = text_of(sources / "lispBM/lispif_vesc_extensions.c");
   const std::string script = exported("vesc");
@@ -110,7 +111,7 @@ std::string structure(const std::string& sources, const std::string& name) {
 TEST_F(MoteusConsumer, FirmwareHasEveryKey) {
   const fs::path sources = place_of("HEATSOAK_MOTEUS_SOURCES");
   if (sources.empty()) {
-    GTEST_SKIP() << "HEATSOAK_MOTEUS_SOURCES is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("moteus") "HEATSOAK_MOTEUS_SOURCES is not set";
   }
   const std::string structures = text_of(sources / "fw/bldc_servo_structs.h");
   for (const auto& [key, value] : lines_of(exported("moteus"), R"(^servo\.([a-zA-Z_.]+) ([-0-9.]+)$)")) {
@@ -178,7 +179,7 @@ std::string odrive_type(const std::string& yaml, const std::string& interface, c
 TEST_F(OdriveConsumer, InterfaceHasEverySettingWithItsType) {
   const fs::path sources = place_of("HEATSOAK_ODRIVE_SOURCES");
   if (sources.empty()) {
-    GTEST_SKIP() << "HEATSOAK_ODRIVE_SOURCES is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("odrive") "HEATSOAK_ODRIVE_SOURCES is not set";
   }
   const std::string interface = text_of(sources / "Firmware/odrive-interface.yaml");
   const std::string text = exported("odrive");
@@ -222,7 +223,7 @@ extern TwoWire Wire;
 TEST_F(SimpleFocConsumer, SnippetFitsTheHeaders) {
   const fs::path sources = place_of("HEATSOAK_SIMPLEFOC_SOURCES");
   if (sources.empty()) {
-    GTEST_SKIP() << "HEATSOAK_SIMPLEFOC_SOURCES is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("simplefoc") "HEATSOAK_SIMPLEFOC_SOURCES is not set";
   }
   write("Arduino.h", kArduino);
   write("SPI.h", "#include \"Arduino.h\"\n");
@@ -257,7 +258,7 @@ assert abs(data.act[-1] - rise_K) < 0.1, (data.act, rise_K)
 
 TEST_F(MujocoConsumer, LoadsItAndABlockedMotorWarmsAsComputed) {
   if (std::system("python3 -c 'import mujoco' > /dev/null 2>&1") != 0) {
-    GTEST_SKIP() << "python3 has no mujoco";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("mujoco") "python3 has no mujoco";
   }
   write("motor.xml", exported("mujoco"));
   write("blocked.py", kBlockedMotor);

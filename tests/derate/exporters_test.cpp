@@ -15,6 +15,7 @@
 #include "exported_motor.h"
 #include "exported_text.h"
 #include "motor/measured_power.h"
+#include "support/skip_reasons.h"
 #include "unpacked.h"
 
 namespace heatsoak::derate {
@@ -315,7 +316,7 @@ std::map<std::string, std::string> attributes_of(const std::string& xml, const s
 TEST(MujocoExporter, FollowsTheOfficialSchema) {
   const char* const schema = std::getenv("HEATSOAK_MJCF_XSD");
   if (schema == nullptr) {
-    GTEST_SKIP() << "HEATSOAK_MJCF_XSD is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("mujoco_schema") "HEATSOAK_MJCF_XSD is not set";
   }
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / fmt::format("heatsoak_mujoco_{}.xml", static_cast<int>(getpid()));

@@ -12,6 +12,7 @@
 #include "fmu_unit.h"
 #include "robot/motor_drive.h"
 #include "select/evaluate.h"
+#include "support/skip_reasons.h"
 #include "thermal/transient.h"
 
 namespace heatsoak::derate {
@@ -317,7 +318,7 @@ TEST_P(Fmu, DescriptionHasUnitsStartValuesAndWhatItCanDo) {
 TEST_P(Fmu, DescriptionFollowsTheOfficialSchema) {
   const char* const folder = std::getenv("HEATSOAK_FMI_SCHEMAS");
   if (folder == nullptr) {
-    GTEST_SKIP() << "HEATSOAK_FMI_SCHEMAS is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("fmi") "HEATSOAK_FMI_SCHEMAS is not set";
   }
   for (const char* kind : {"motor", "guard"}) {
     const auto files = unpacked(exported(form(kind)));
@@ -338,7 +339,7 @@ TEST_P(Fmu, DescriptionFollowsTheOfficialSchema) {
 // FMPy (BSD) is a common reader of these files. It is no Debian package, so the test may be skipped.
 TEST_P(Fmu, FmpyAcceptsAndRunsIt) {
   if (std::system("python3 -c 'import fmpy' > /dev/null 2>&1") != 0) {
-    GTEST_SKIP() << "python3 has no fmpy";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("fmpy") "python3 has no fmpy";
   }
   for (const char* kind : {"motor", "guard"}) {
     const fs::path file = fs::path(testing::TempDir()) / fmt::format("heatsoak_{}_{}.fmu", form(kind), static_cast<int>(getpid()));

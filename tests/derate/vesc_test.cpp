@@ -16,6 +16,7 @@
 #include "derate/export_text.h"
 #include "exported_motor.h"
 #include "small_lisp.h"
+#include "support/skip_reasons.h"
 
 namespace heatsoak::derate {
 namespace {
@@ -66,7 +67,7 @@ TEST(VescExporter, StatesTheSettingsOutOfItsReach) {
 TEST(VescExporter, RealInterpreterComputesTheObserver) {
   const char* const repl = std::getenv("HEATSOAK_LISPBM_REPL");
   if (repl == nullptr) {
-    GTEST_SKIP() << "HEATSOAK_LISPBM_REPL is not set";
+    GTEST_SKIP() << HEATSOAK_LACKS_CONSUMER("lispbm") "HEATSOAK_LISPBM_REPL is not set";
   }
   constexpr int kCycles = 1000;
   // The controller's functions cannot be redefined, so the script gets its own.
