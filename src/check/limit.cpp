@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -41,6 +42,19 @@ double in_unit(double value, std::string_view from, std::string_view to) { retur
 
 /// Returns the step of the third significant digit of a distance.
 double step_of(double distance) { return std::pow(10.0, std::floor(std::log10(std::max(std::abs(distance), 1e-9))) - 2.0); }
+
+/// --update counts a smaller distance of a value to its origin as this one, in the unit. Other units have no such distance, nor have
+/// counts.
+struct LeastDistance {
+  std::string_view unit;  ///< empty: shares and other pure numbers
+  double value;
+};
+constexpr std::array<LeastDistance, 3> kLeastDistances{{{"degC", 20.0}, {"A", 1.0}, {"", 0.02}}};
+
+double least_distance_value(const ThresholdType& type) {
+  const auto found = std::ranges::find(kLeastDistances, type.unit, &LeastDistance::unit);
+  return found == kLeastDistances.end() || type.is_whole ? 0.0 : found->value;
+}
 
 /// Rounds to a multiple of `step`, up or down. Rounding errors do not count: 150.0000000001 gives 150.
 double rounded_away(double value, double step, bool is_up) {
@@ -137,10 +151,8 @@ std::string updated_limit(const Measured& measured, const ThresholdType& type, s
   if (type.room == Room::none) {
     return text_of(in_unit(measured.value, type.unit, unit));
   }
-  // A value at its origin would get no room. A number of an answer without an interval gets none: it is a limit of exactly zero.
-  constexpr double kLeastRise_K = 20.0;
-  const double room = margin_share * std::max({std::abs(measured.value - measured.origin_value), type.least_distance_value,
-                                               measured.interval_width_value, type.unit == "degC" ? kLeastRise_K : 0.0});
+  const double room =
+      margin_share * std::max({std::abs(measured.value - measured.origin_value), least_distance_value(type), measured.interval_width_value});
   const double limit = in_unit(is_up ? measured.value + room : measured.value - room, type.unit, unit);
   const double step = type.is_whole ? 1.0 : step_of(limit - in_unit(measured.origin_value, type.unit, unit));
   const auto end_of_range = [&](double value) { return std::isfinite(value) ? in_unit(value, type.unit, unit) : value; };

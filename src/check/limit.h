@@ -56,7 +56,8 @@ struct Looseness {
 std::optional<Looseness> looseness(double value, std::string_view text, const ThresholdType& type, const Check& check);
 
 /// Returns the limit that --update writes, in `unit`: "at most 158 degC". It lies beyond `measured` by `margin_share` of the value's
-/// distance to its origin, and is rounded so that the value keeps it. Thresholds without room get the value itself.
+/// distance to its origin, at least of 20 K, of 1 A, or of 0.02 for a pure number that is no count, and is rounded so that the value keeps
+/// it. Thresholds without room get the value itself.
 std::string updated_limit(const Measured& measured, const ThresholdType& type, std::string_view unit, double margin_share);
 
 /// Returns "at most" or "at least".

@@ -98,11 +98,10 @@ struct ThresholdType {
   bool is_share = false;  ///< a pure number that is shown in percent
   bool is_whole = false;  ///< a count: a limit with a fraction is a mistake
   Bound direction = Bound::at_most;
-  base::Range range = {};             ///< permitted values of the limit
-  Room room = Room::share;            ///< room that --update leaves
-  double least_distance_value = 0.0;  ///< in the unit of the threshold; --update counts a smaller distance to the origin as this one
-  std::string_view meaning;           ///< exact definition of the compared value
-  std::string_view example;           ///< limit that can be pasted
+  base::Range range = {};    ///< permitted values of the limit
+  Room room = Room::share;   ///< room that --update leaves
+  std::string_view meaning;  ///< exact definition of the compared value
+  std::string_view example;  ///< limit that can be pasted
   std::vector<Setting> needs;
   std::vector<Setting> takes = {};  ///< optional settings that change the value
   /// Returns the loosest permitted limit; nothing if every limit in `range` is permitted. Null has the same meaning.

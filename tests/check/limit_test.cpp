@@ -75,6 +75,8 @@ TEST(UpdatedLimit, GivesATemperatureASharesOfItsRise) {
   EXPECT_EQ(updated_limit({-4.0, 0.0}, threshold("current_margin"), "A", 0.1), "at least -4.4 A");
   EXPECT_EQ(updated_limit({3.0, 0.0}, threshold("rank"), "", 0.05), "at most 3");
   EXPECT_EQ(updated_limit({0.0, 0.0}, threshold("derating_excess"), "A", 0.05), "at most 0.05 A");
+  EXPECT_EQ(updated_limit({0.3, 0.0}, threshold("current_margin"), "A", 0.05), "at least 0.25 A");
+  EXPECT_EQ(updated_limit({0.002, 0.0}, threshold("guard_active_share"), "%", 0.05), "at most 0.3 %");
   EXPECT_EQ(updated_limit({1.0, 0.0}, threshold("probability_over_limit"), "%", 0.05), "at most 100 %");
 }
 

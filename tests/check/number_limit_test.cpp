@@ -24,7 +24,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 const Json kAnswer = Json::parse(R"({
-  "schema": "heatsoak.simulate/1", "verdict": "pass", "cold_C": 10.6, "room_C": 25.0, "idle_s": 0.0, "runaway": false, "time_to_limit_s": null, "never": ["time_to_limit_s"], "margin_A": null, "none": [],
+  "schema": "heatsoak.simulate/1", "verdict": "pass", "cold_C": 10.6, "room_C": 25.0, "idle_s": 0.0, "shortfall_ratio": 0.00105, "allowed_A": 0.4, "runaway": false, "time_to_limit_s": null, "never": ["time_to_limit_s"], "margin_A": null, "none": [],
   "planners": [{"planner": "fast", "distance_m": 900.5, "peaks_C": {"p05": 40.0, "p95": 61.5, "p95_ci95": [58.0, 66.0]}},
                {"planner": "slow.2", "distance_m": 700.0, "peaks_C": {"p05": 30.0, "p95": 51.5, "p95_ci95": [48.0, null]}}],
   "probability_over_limit": 0.02, "probability_ci95": [0.005, 0.06], "over_share_ci95": [0.0, 0.01], "over": 2,
@@ -344,6 +344,8 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
       "cold_C = \"at most 5 degC\"\n"
       "room_C = \"at least 50 degC\"\n"
       "idle_s = \"at most 3 s\"\n"
+      "shortfall_ratio = \"at most 1\"\n"
+      "allowed_A = \"at least 0.1 A\"\n"
       "\"wheels.1.damping_V_s_per_rad.value\" = \"at most 1 V s/rad\"\n"
       "\"drift_K.value\" = \"at most 1 K\"\n");
   const std::string after = with_new_limits(text_, all, 0.05);
@@ -353,6 +355,8 @@ TEST_F(CommandChecks, UpdateKeepsDirectionUnitAndQuotes) {
   EXPECT_THAT(after, HasSubstr("cold_C = \"at most 11.6 degC\"\n")) << "below 25 degC";
   EXPECT_THAT(after, HasSubstr("room_C = \"at least 24 degC\"\n")) << "no rise at all";
   EXPECT_THAT(after, HasSubstr("idle_s = \"at most 0 s\"\n")) << "a value without a scale of its own";
+  EXPECT_THAT(after, HasSubstr("shortfall_ratio = \"at most 0.00205\"\n")) << "5 % of at least 0.02";
+  EXPECT_THAT(after, HasSubstr("allowed_A = \"at least 0.35 A\"\n")) << "5 % of at least 1 A";
   EXPECT_THAT(after, HasSubstr("value\" = \"at most 0.0315 V s/rad\"\n")) << "5 % of the end of the interval, which is more than its width";
   EXPECT_THAT(after, HasSubstr("\"drift_K.value\" = \"at most 0.293 K\"\n")) << "5 % of the width of the interval";
   EXPECT_TRUE(std::ranges::all_of(all, &Outcome::passed));

@@ -14,7 +14,6 @@ ThresholdType derating_excess() {
   return {.name = {},
           .unit = "A",
           .range = base::Range::between(0.0, 1e3),
-          .least_distance_value = 1.0,
           .meaning =
               "largest excess of the current that the committed 'table' allows over that of a fresh `derate` of the same robot, motor and "
               "options, over all speeds and temperatures. An excess within 0.05 % of the largest current counts as 0. A C header also "

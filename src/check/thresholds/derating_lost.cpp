@@ -7,7 +7,6 @@ ThresholdType derating_lost() {
       .name = {},
       .unit = "A",
       .range = base::Range::between(0.0, 1e3),
-      .least_distance_value = 1.0,
       .meaning =
           "largest deficit of the current that the committed 'table' allows below that of a fresh `derate` of the same robot, motor "
           "and options, over all speeds and temperatures: safe, but unused current. A C header also fails if it is of another motor or its "
