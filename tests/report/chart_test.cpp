@@ -100,6 +100,26 @@ TEST_F(ChartTest, LimitAndBandStandWhereTheAxesSay) {
   EXPECT_NEAR(seen.high.y_px, winding.y.px(chart.panels[1].curves[0].y.back() + 9.0), 1.0);
 }
 
+TEST_F(ChartTest, LimitThatIsNoHorizontalLineHasTheColourOfLevels) {
+  const Chart chart{.title = "t",
+                    .x_label = "x",
+                    .panels = {{.title = "p",
+                                .y_label = "y",
+                                .curves = {{.x = {0.0, 10.0}, .y = {0.0, 10.0}},
+                                           {.x = {4.0, 4.0}, .y = {0.0, 10.0}, .color_index = kLevelColor_index}}}}};
+  const auto elements = drawn(chart);
+  const auto limits = lines(elements, red, 2);
+  ASSERT_EQ(limits.size(), 1U);
+  EXPECT_NEAR(limits[0].front().x_px, seen_panels(elements).at(0).x.px(4.0), 1.0);
+}
+
+// VTK draws the frame of a panel with an invisible pen, which some viewers show as dots at its corners.
+TEST_F(ChartTest, FrameWithoutAPenIsNotDrawn) {
+  for (const Element& each : drawn(warm_up())) {
+    EXPECT_NE(each.at("stroke-dasharray"), "0,10") << each.at("points");
+  }
+}
+
 TEST_F(ChartTest, BarsOfRangesStandBesideTheCurvesAtTheirValues) {
   Chart chart = warm_up();
   constexpr int kColor = 6;  // no curve has this color

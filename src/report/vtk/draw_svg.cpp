@@ -55,7 +55,9 @@ constexpr std::array<Color, 8> kPalette{{{0x00, 0x72, 0xB2},
                                          {0xF0, 0xE4, 0x42}}};
 constexpr unsigned char kBandOpacity = 51;  // 20 %
 
-Color palette_color(int index) { return kPalette[static_cast<unsigned>(index) % kPalette.size()]; }
+Color palette_color(int index) {
+  return index == kLevelColor_index ? std::to_array(kLimitColor) : kPalette[static_cast<unsigned>(index) % kPalette.size()];
+}
 
 void set_pen(vtkPen* pen, const Color& color, double width_px, bool is_dashed) {
   pen->SetColor(color[0], color[1], color[2]);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
+#include <vtkPen.h>
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
 #include <vtkXMLDataElement.h>
@@ -21,6 +22,12 @@ void SvgDevice::DrawString(float* point, const vtkStdString& text) {
     add_text(point[0], y_px, text, true);
   }
   add_text(point[0], y_px, text, false);
+}
+
+void SvgDevice::DrawPoly(float* points, int count, unsigned char* colors, int components) {
+  if (this->Pen->GetLineType() != vtkPen::NO_PEN) {
+    Superclass::DrawPoly(points, count, colors, components);
+  }
 }
 
 void SvgDevice::add_text(float x_px, float y_px, const vtkStdString& text, bool is_rim) {

@@ -5,9 +5,10 @@
 
 namespace heatsoak::report {
 
-/// Corrects two faults of VTK 9.1. Text: VTK writes glyph outlines (large, not searchable), or <text> with attribute values that SVG does
+/// Corrects three faults of VTK 9.1. Text: VTK writes glyph outlines (large, not searchable), or <text> with attribute values that SVG does
 /// not define ("right", "top"), sizes in pt and the wrong rotation. Clipping: VTK uses wrong coordinates for the rectangle; clipping is
-/// switched off because nothing needs it.
+/// switched off because nothing needs it. Lines without a pen: VTK writes them in black with dashes of length 0, which some viewers show as
+/// dots.
 class SvgDevice : public vtkSVGContextDevice2D {
  public:
   static SvgDevice* New();
@@ -16,6 +17,8 @@ class SvgDevice : public vtkSVGContextDevice2D {
       /// The property "bottom" means the baseline; "shadow" means a white outline.
       void DrawString(float* point, const vtkStdString& text) override;
   using vtkSVGContextDevice2D::DrawString;
+
+  void DrawPoly(float* points, int count, unsigned char* colors, int components) override;
 
   void SetClipping(int*) override {}
   void EnableClipping(bool) override {}

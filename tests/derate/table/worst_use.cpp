@@ -329,7 +329,7 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
                               1e-6 * std::accumulate(tallies.begin(), tallies.end(), 0.0,
                                                      [](double sum, const Tally& each) { return sum + static_cast<double>(each.trials); })),
       .x_label = "peak winding temperature / °C",
-      .panels = {{.title = "share of trials with a higher peak", .y_label = "share / %", .levels = {{"5 %", 5.0}}, .logarithmic = true}}};
+      .panels = {{.title = "share of trials with a higher peak", .y_label = "share / %", .logarithmic = true}}};
   for (std::size_t i = 0; i < tallies.size(); ++i) {
     report::ChartCurve curve{.name = tallies[i].meaning, .color_index = static_cast<int>(i)};
     std::uint64_t above = tallies[i].trials;
@@ -342,11 +342,19 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
     }
     chart.panels[0].curves.push_back(curve);
   }
-  constexpr int kLimitColor = 7;
+  double first_C = limit_C;
+  double last_C = limit_C;
+  for (const report::ChartCurve& curve : chart.panels[0].curves) {
+    first_C = curve.x.empty() ? first_C : std::min(first_C, curve.x.front());
+    last_C = curve.x.empty() ? last_C : std::max(last_C, curve.x.back());
+  }
+  constexpr int kPromiseColor = 5;
+  chart.panels[0].curves.push_back(
+      {.name = "5 % of the trials", .x = {first_C, last_C}, .y = {5.0, 5.0}, .color_index = kPromiseColor, .dashed = true});
   chart.panels[0].curves.push_back({.name = fmt::format("limit of {:.0f} °C", limit_C),
                                     .x = {limit_C, limit_C},
                                     .y = {1e-4, 100.0},
-                                    .color_index = kLimitColor,
+                                    .color_index = report::kLevelColor_index,
                                     .dashed = true});
   return chart;
 }

@@ -227,7 +227,7 @@ report::Chart time_picture(const Study& study) {
   report::ChartPanel observer = panel("Winding of the guard's observer, which adds the safety factor on heat", "temperature / °C");
   observer.curves = {curve_of("", seconds_of(bench, 1), &Second::observer_C, 2), curve_of("", seconds_of(file, 1), &Second::observer_C, 1)};
   observer.levels = heat.levels;
-  report::ChartPanel allowed = panel("Allowed current of the most limited wheel; at the top grip limits, not the guard", "current / A");
+  report::ChartPanel allowed = panel("Allowed current of the most limited wheel; top: limited by grip, not by the guard", "current / A");
   allowed.curves = {curve_of("", seconds_of(bench, 1), &Second::allowed_A, 2), curve_of("", seconds_of(file, 1), &Second::allowed_A, 1)};
   report::ChartPanel distance = panel("Distance lost against no guard", "distance / m");
   distance.curves = {lost_m(file, 1, "", 1), lost_m(file, 3, "", 5), lost_m(bench, 1, "", 2), lost_m(bench, 3, "", 3)};

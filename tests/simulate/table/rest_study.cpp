@@ -280,7 +280,10 @@ std::string study_rest(const HardMatch& match, const Game& game, const motor::Mo
                               .levels = {}});
     }
     constexpr int kColors[] = {0, 2, 1};
-    report::ChartCurve curve{.name = r < judges.size() ? rows[r].judge->name() : "", .color_index = kColors[place % std::size(kColors)]};
+    // Dashes show the curve below, where both play to the end.
+    report::ChartCurve curve{.name = r < judges.size() ? rows[r].judge->name() : "",
+                             .color_index = kColors[place % std::size(kColors)],
+                             .dashed = place == 1};
     for (std::size_t i = 0; i < kRests; ++i) {
       curve.x.push_back(static_cast<double>(i) * kRestStep_s / 60.0);
       curve.y.push_back(rows[r].median_s[i] / 60.0);
