@@ -58,10 +58,10 @@ class Sampling {
     constexpr double kWindingSteps = 30.0;
     const auto step = [](const std::vector<double>& axis, double steps) { return (axis.back() - axis.front()) / steps; };
     result_.stator_C = sampled(table.stator_C, std::max(1.0, step(table.stator_C, kStatorSteps)), {0.5, 1.0, 2.0, 4.0, 8.0});
-    std::vector<double> winding_C = table.winding_C;
-    std::erase_if(winding_C, [&](double each_C) { return each_C >= limit_C; });
-    winding_C.push_back(limit_C);
-    result_.winding_C = sampled(winding_C, std::max(1.0, step(winding_C, kWindingSteps)), {0.25, 0.5, 1.0, 2.0});
+    std::vector<double> below_limit_C = table.winding_C;
+    std::erase_if(below_limit_C, [&](double each_C) { return each_C >= limit_C; });
+    below_limit_C.push_back(limit_C);
+    result_.winding_C = sampled(below_limit_C, std::max(1.0, step(below_limit_C, kWindingSteps)), {0.25, 0.5, 1.0, 2.0});
     for (const double speed_rad_per_s : result_.speed_rad_per_s) {
       for (const double stator_C : result_.stator_C) {
         for (const double winding_C : result_.winding_C) {
