@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadDrive{"revolutions_per_minute", of_each([](friction::DriveRow& row) {
                    std::ranges::for_each(row.wheel_speed_rad_per_s, [](double& each) { each *= 30.0 / std::numbers::pi; });
                  }),
-                 2, "times the back-EMF of the motor"},
+                 2, "times the motor's back-EMF"},
         BadDrive{"other_sign",
                  of_each([](friction::DriveRow& row) { std::ranges::for_each(row.pwm_ratio, [](double& each) { each = -each; }); }), 2,
                  "have the wrong sign?"},

@@ -49,7 +49,7 @@ ChartPanel level_curves(const std::vector<double>& temperatures_C) {
 }
 
 struct NamedLimit {
-  double middle_px = 0.0;         ///< of the name, from the top of the picture
+  double middle_px = 0.0;         ///< middle of the name, from the top of the picture
   std::vector<Point> plate = {};  ///< corners of the white rectangle behind it; empty: none
 };
 

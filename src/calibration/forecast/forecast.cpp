@@ -168,10 +168,10 @@ class Search {
     rounds.insert(rounds.begin(), {all.size(), refitted, 1.0});
     progress_.expect(work_->after_whole_runs(rounds));
     std::vector<Candidate> candidates = screened(all);
-    std::vector<double> cost_ratios;
-    std::transform(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(refitted), std::back_inserter(cost_ratios),
+    std::vector<double> cost_ratio;
+    std::transform(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(refitted), std::back_inserter(cost_ratio),
                    [](const Candidate& each) { return each.cost_ratio; });
-    FitCounter counter(progress_, calibration_phases::kExtending, work_->of_extending(std::move(cost_ratios)));
+    FitCounter counter(progress_, calibration_phases::kExtending, work_->of_extending(std::move(cost_ratio)));
     Candidate* best = nullptr;
     std::optional<PieceScore> best_score;
     double best_nats = 0.0;

@@ -25,8 +25,8 @@ constexpr double kSimulations_ordinary = 14.0;
 constexpr double kFromGoodStart_share = 0.85;
 
 /// Returns the expected number of simulations per fit: the mean of the ended fits, in which the usual number counts as one more.
-double expected_simulations(const FitWork& usual, double ended_simulations, double ended_fits) {
-  return (usual.simulations_count + ended_simulations) / (1.0 + ended_fits);
+double expected_simulations(const FitWork& usual, double ended_simulations_count, double ended_fits_count) {
+  return (usual.simulations_count + ended_simulations_count) / (1.0 + ended_fits_count);
 }
 
 /// Reports the finished work of the present phase, and the work that is left.
@@ -71,7 +71,7 @@ CalibrationWork::CalibrationWork(std::span<const estimation::MeasuredRun> runs, 
 }
 
 double PhaseFits::all_s() const {
-  return (to_all.all_s() + without_piece.all_s()) * std::accumulate(cost_ratios.begin(), cost_ratios.end(), 0.0);
+  return (to_all.all_s() + without_piece.all_s()) * std::accumulate(cost_ratio.begin(), cost_ratio.end(), 0.0);
 }
 
 PhaseFits CalibrationWork::fits_of(double to_all_count, double simulations_count, double without_piece_count,
@@ -83,9 +83,9 @@ PhaseFits CalibrationWork::of_whole_runs(std::size_t starts) const {
   return fits_of(static_cast<double>(starts), kSimulations, piece_count_, kSimulations_without_piece);
 }
 
-PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratios) const {
+PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratio) const {
   PhaseFits fits = fits_of(1.0, kSimulations_extended, piece_count_, kSimulations_extended_without_piece);
-  fits.cost_ratios = std::move(cost_ratios);
+  fits.cost_ratio = std::move(cost_ratio);
   return fits;
 }
 
@@ -122,50 +122,50 @@ FitCounter::FitCounter(const base::JobProgress& job, const std::string& phase, P
       progress_(job.begin(phase)),
       to_all_{fits.to_all},
       without_piece_{fits.without_piece},
-      cost_ratios_(std::move(fits.cost_ratios)) {
+      cost_ratio_(std::move(fits.cost_ratio)) {
   report();
 }
 
-double FitCounter::Count::expected() const { return expected_simulations(usual, ended_simulations, ended_fits); }
+double FitCounter::Count::expected() const { return expected_simulations(usual, ended_simulations_count, ended_fits_count); }
 
 double FitCounter::Count::left_of_model_s() const {
-  const double fits = usual.fits_count - fits_of_model;
+  const double fits = usual.fits_count - fits_of_model_count;
   if (fits <= 0.0) {
     return 0.0;
   }
   // A fit that needs more simulations than expected is assumed to need half as many again.
   constexpr double kMore_share = 0.5;
-  const double left = std::max(expected() - present_simulations, kMore_share * present_simulations);
+  const double left = std::max(expected() - present_simulations_count, kMore_share * present_simulations_count);
   return (left + (fits - 1.0) * expected()) * usual.simulation_s;
 }
 
 void FitCounter::simulated(Count& count) {
-  count.present_simulations += 1.0;
-  done_s_ += cost_ratios_[model_] * count.usual.simulation_s;
+  count.present_simulations_count += 1.0;
+  done_s_ += cost_ratio_[model_] * count.usual.simulation_s;
   report();
 }
 
 void FitCounter::fitted(Count& count) {
-  count.ended_fits += 1.0;
-  count.fits_of_model += 1.0;
-  count.ended_simulations += count.present_simulations;
-  count.present_simulations = 0.0;
+  count.ended_fits_count += 1.0;
+  count.fits_of_model_count += 1.0;
+  count.ended_simulations_count += count.present_simulations_count;
+  count.present_simulations_count = 0.0;
   report();
 }
 
 void FitCounter::ended_model() {
-  model_ = std::min(model_ + 1, cost_ratios_.size() - 1);
+  model_ = std::min(model_ + 1, cost_ratio_.size() - 1);
   for (Count* const count : {&to_all_, &without_piece_}) {
-    count->fits_of_model = 0.0;
-    count->present_simulations = 0.0;
+    count->fits_of_model_count = 0.0;
+    count->present_simulations_count = 0.0;
   }
   report();
 }
 
 void FitCounter::report() const {
-  double left_s = cost_ratios_[model_] * (to_all_.left_of_model_s() + without_piece_.left_of_model_s());
-  for (std::size_t later = model_ + 1; later < cost_ratios_.size(); ++later) {
-    left_s += cost_ratios_[later] * (to_all_.of_model_s() + without_piece_.of_model_s());
+  double left_s = cost_ratio_[model_] * (to_all_.left_of_model_s() + without_piece_.left_of_model_s());
+  for (std::size_t later = model_ + 1; later < cost_ratio_.size(); ++later) {
+    left_s += cost_ratio_[later] * (to_all_.of_model_s() + without_piece_.of_model_s());
   }
   report_work(job_, progress_, done_s_, left_s);
 }
@@ -178,19 +178,19 @@ ScreeningCounter::ScreeningCounter(const base::JobProgress& job, const FitWork& 
 
 void ScreeningCounter::simulated(std::size_t candidate) {
   const std::lock_guard lock(mutex_);
-  counts_[candidate].simulations += 1.0;
+  counts_[candidate].simulations_count += 1.0;
   double done = 0.0;
   double ended = 0.0;
-  double ended_fits = 0.0;
+  double ended_fits_count = 0.0;
   for (const Count& each : counts_) {
-    done += each.simulations;
-    ended += each.elapsed_s ? each.simulations : 0.0;
-    ended_fits += each.elapsed_s ? 1.0 : 0.0;
+    done += each.simulations_count;
+    ended += each.elapsed_s ? each.simulations_count : 0.0;
+    ended_fits_count += each.elapsed_s ? 1.0 : 0.0;
   }
-  const double expected = expected_simulations(usual_, ended, ended_fits);
+  const double expected = expected_simulations(usual_, ended, ended_fits_count);
   double left = 0.0;
   for (const Count& each : counts_) {
-    left += each.elapsed_s ? 0.0 : std::max(0.0, expected - each.simulations);
+    left += each.elapsed_s ? 0.0 : std::max(0.0, expected - each.simulations_count);
   }
   report_work(job_, progress_, done * usual_.simulation_s, left * usual_.simulation_s);
 }
@@ -203,14 +203,14 @@ void ScreeningCounter::fitted(std::size_t candidate, double elapsed_s) {
 double ScreeningCounter::cost_ratio(std::size_t candidate) const {
   const std::lock_guard lock(mutex_);
   double elapsed_s = 0.0;
-  double simulations = 0.0;
+  double simulations_count = 0.0;
   for (const Count& each : counts_) {
     elapsed_s += each.elapsed_s.value_or(0.0);
-    simulations += each.simulations;
+    simulations_count += each.simulations_count;
   }
   const Count& own = counts_[candidate];
-  const double expected_s = elapsed_s * own.simulations;
-  return expected_s > 0.0 ? own.elapsed_s.value_or(0.0) * simulations / expected_s : 1.0;
+  const double expected_s = elapsed_s * own.simulations_count;
+  return expected_s > 0.0 ? own.elapsed_s.value_or(0.0) * simulations_count / expected_s : 1.0;
 }
 
 }  // namespace heatsoak::calibration

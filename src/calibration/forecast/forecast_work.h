@@ -49,7 +49,7 @@ struct PhaseFits {
   FitWork to_all;
   FitWork without_piece;
   /// Duration of a simulation relative to the usual one, per model in the order of the fits.
-  std::vector<double> cost_ratios = {1.0};
+  std::vector<double> cost_ratio = {1.0};
 
   [[nodiscard]] double all_s() const;
 };
@@ -69,7 +69,7 @@ class CalibrationWork {
   /// Returns the fits of kWholeRuns from this number of starting points.
   [[nodiscard]] PhaseFits of_whole_runs(std::size_t starts) const;
   /// Returns the fits of kExtending for the tested extensions with these durations of a simulation relative to the usual one.
-  [[nodiscard]] PhaseFits of_extending(std::vector<double> cost_ratios) const;
+  [[nodiscard]] PhaseFits of_extending(std::vector<double> cost_ratio) const;
   /// Returns the fits of kComparing.
   [[nodiscard]] PhaseFits of_comparing() const;
   /// Returns the short fits of kScreening, each of which simulates all runs on one core.
@@ -108,10 +108,10 @@ class FitCounter {
   /// Fits of one kind, so far.
   struct Count {
     FitWork usual;
-    double ended_fits = 0.0;           ///< of all models
-    double ended_simulations = 0.0;    ///< of all models
-    double fits_of_model = 0.0;        ///< ended fits of the present model
-    double present_simulations = 0.0;  ///< of the present fit
+    double ended_fits_count = 0.0;           ///< number of ended fits of all models
+    double ended_simulations_count = 0.0;    ///< simulations of those fits
+    double fits_of_model_count = 0.0;        ///< number of ended fits of the present model
+    double present_simulations_count = 0.0;  ///< simulations of the present fit
 
     /// Returns the expected number of simulations per fit.
     [[nodiscard]] double expected() const;
@@ -127,7 +127,7 @@ class FitCounter {
   base::JobProgress job_;
   base::Progress progress_;
   Count to_all_, without_piece_;
-  std::vector<double> cost_ratios_;
+  std::vector<double> cost_ratio_;
   std::size_t model_ = 0;  ///< index of the present model
   double done_s_ = 0.0;
 };
@@ -147,7 +147,7 @@ class ScreeningCounter {
 
  private:
   struct Count {
-    double simulations = 0.0;
+    double simulations_count = 0.0;
     std::optional<double> elapsed_s = {};  ///< empty until the fit has ended
   };
 
