@@ -21,7 +21,7 @@ TEST(SimulateGuard, shadow_says_what_it_would_limit_and_changes_no_temperature) 
   const Words motor = Words{"simulate", "--motor", "maxon_ecx_flat_32l_48v"} + kRobot + Words{"--json", "-"};
   const ProgramRun shadow = run(motor);
   ASSERT_EQ(shadow.exit_code, 0) << shadow.err;
-  EXPECT_THAT(shadow.err, HasSubstr("thermal guard (shadow), jerk_limited: would have limited"));
+  EXPECT_THAT(shadow.err, HasSubstr("thermal guard (shadow), jerk_limited: would have limited no motor in 29 min;"));
   const json with = shadow.json();
   EXPECT_EQ(with.at("guard").at("use"), "shadow");
   EXPECT_TRUE(with.at("guard").at("why_none").is_null());
