@@ -34,16 +34,6 @@ struct Column {
 };
 constexpr Column kColumns[] = {{"distance not driven", &Cost::lost_percent, 1, " %"}, {"time lost", &Cost::time_lost_s, 0, " s"}};
 
-/// Whether a bar shows a robot that drove further than without limit.
-bool has_longer_way(const std::vector<CostLevel>& levels) {
-  constexpr double kShown_percent = -0.05;
-  return std::ranges::any_of(levels, [](const CostLevel& level) {
-    return std::ranges::any_of(level.rows, [](const CostRow& row) {
-      return std::ranges::any_of(row.by_knowledge, [](const Cost& cost) { return cost.lost_percent < kShown_percent; });
-    });
-  });
-}
-
 double most_of(const std::vector<CostLevel>& levels, double Cost::*value) {
   double most = 1e-9;
   for (const CostLevel& level : levels) {
@@ -115,14 +105,6 @@ std::string draw_costs(const std::string& title, const std::vector<std::string>&
       y_px += kRow_px;
     }
     y_px += 8.0;
-  }
-  if (has_longer_way(levels)) {
-    y_px += 12.0;
-    body += text_at(
-        20, y_px,
-        "Below 0 %: the robot drives further than without limit, probably because it lags behind its plan, overshoots and comes back. "
-        "Its cost is the time lost.",
-        R"(font-size="12" fill="#555555")");
   }
   const double height_px = y_px + 10.0;
   return fmt::format(

@@ -306,7 +306,8 @@ std::string picture(const std::vector<Level>& levels, const std::vector<Known>& 
        fmt::format("Against the same motor in the same match without limit. Time lost: more than {:.0f} mm off the plan, beyond "
                    "what the unlimited robot is.",
                    1e3 * kOffPlan_m),
-       "Found in hindsight: for exactly these motors and matches, which no team knows in advance; the title is about the other ways."},
+       "Found in hindsight: for exactly these motors and matches, which no team knows in advance; the title is about the other ways.",
+       "Below 0 %: a robot that lags, overshoots and comes back drives further than its plan."},
       {"motor known from its file (estimates)", "motor known from a bench test"}, shown);
 }
 
