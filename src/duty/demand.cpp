@@ -185,9 +185,6 @@ void DemandGatherer::close_bin() {
 WheelDemand DemandGatherer::finish() {
   close_bin();
   close_stay();
-  // An evaluation keeps thousands of demands: no memory for more bins or points.
-  demand_.bins.shrink_to_fit();
-  demand_.points.reserve(demand_.points.size() + time_at_s_.size());
   // The cells are sorted, so that equal loads give equal points.
   for (const auto& [cell, time_s] : std::map<Cell, double>(time_at_s_.begin(), time_at_s_.end())) {
     demand_.points.push_back({cell[torque] * step_[torque], cell[speed] * step_[speed], cell[current] * step_[current], time_s});

@@ -26,18 +26,6 @@ TEST(DemandGatherer, power_is_the_mean_of_the_products) {
 }
 
 // Triangular speed between −30 and 30 rad/s with slopes of ±60 rad/s², a thousand steps per second.
-// An evaluation holds thousands of games, so room for further bins would waste much of its memory.
-TEST(DemandGatherer, a_finished_demand_has_no_room_for_more) {
-  DemandGatherer gatherer("wheel", 0.25, kGrid);
-  for (int i = 0; i < 1300; ++i) {
-    gatherer.add(0.25, 0.001 * i, 1.0 * i);
-  }
-  const WheelDemand demand = gatherer.finish();
-  ASSERT_EQ(demand.bins.size(), 1300U);
-  EXPECT_EQ(demand.bins.capacity(), demand.bins.size());
-  EXPECT_EQ(demand.points.capacity(), demand.points.size());
-}
-
 TEST(DemandGatherer, acceleration_is_the_mean_of_its_magnitude_through_reversals_and_across_bins) {
   DemandGatherer gatherer("wheel", 0.7, kGrid);
   for (int i = 0; i < 7000; ++i) {
