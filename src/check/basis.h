@@ -42,12 +42,14 @@ struct MarginBasis {
 /// Place where a committed table allows most more than a fresh one.
 struct ExcessBasis {
   derate::TablePlace excess;
-  double lost_A = 0.0;  ///< largest deficit elsewhere
+  double lost_A = 0.0;             ///< largest deficit elsewhere
+  std::string other_version = {};  ///< derate::TableComparison::other_version
 };
 
 /// Place where a committed table allows most less than a fresh one.
 struct LostBasis {
   derate::TablePlace lost;
+  std::string other_version = {};  ///< derate::TableComparison::other_version
 };
 
 struct TimeAboveBasis {

@@ -65,6 +65,7 @@ struct ObserverDiffers {
   std::filesystem::path table;
   derate::HeaderDifference first;
   std::size_t count = 0;
+  std::string other_version = {};  ///< derate::TableComparison::other_version
 };
 
 /// The check names neither files nor a motor, robot or duty.

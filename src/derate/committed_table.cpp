@@ -15,6 +15,7 @@
 
 #include "base/files.h"
 #include "base/quantity.h"
+#include "base/version.h"
 #include "derate/c_header/c_text.h"
 #include "derate/exporter.h"
 #include "derate/integer_form/quantised_table.h"
@@ -446,6 +447,7 @@ std::optional<SensorDifference> sensor_difference(const CommittedTable& committe
 TableComparison compare(const CommittedTable& committed, const Derating& fresh) {
   TableComparison found;
   found.is_other_motor = !committed.motor_id.empty() && committed.motor_id != fresh.motor_id;
+  found.other_version = committed.version == base::program_version() ? std::string() : committed.version;
   const double rounding_A = tolerance_A(committed, fresh.table);
   if (committed.table) {
     compare_tables(*committed.table, committed.is_integer ? integer_form::QuantisedTable(fresh.table).in_units() : fresh.table, rounding_A,

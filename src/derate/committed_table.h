@@ -88,6 +88,8 @@ struct TableComparison {
   /// one, the observer in the firmware is not the observer that the table was checked with.
   std::vector<HeaderDifference> differing;
   bool is_other_motor = false;  ///< the file names a motor, and it is another one
+  /// Version of the program that wrote the file; empty if it is base::program_version(), or not stated.
+  std::string other_version = {};
 
   /// Returns whether the committed table is safe to use.
   [[nodiscard]] bool holds() const { return !is_other_motor && excess.difference_A == 0.0 && differing.empty(); }

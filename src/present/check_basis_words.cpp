@@ -8,6 +8,7 @@
 #include "derate/committed_table.h"
 #include "motor/lint.h"
 #include "present/check_words.h"
+#include "present/derating.h"
 
 namespace heatsoak::present {
 namespace {
@@ -41,15 +42,22 @@ std::string place_words(const derate::TablePlace& place) {
                                                  place.speed_rad_per_s, place.stator_C, place.winding_C, place.committed_A, place.fresh_A);
 }
 
-std::string say(const check::ExcessBasis& of, const check::Outcome& /*outcome*/) {
+/// Returns a remark on the version if a limit of a committed table does not hold.
+std::string version_words(const std::string& other_version, const check::Outcome& outcome) {
+  return outcome.passed() || other_version.empty() ? std::string() : "; " + upgrade_words(other_version);
+}
+
+std::string say(const check::ExcessBasis& of, const check::Outcome& outcome) {
   std::string text = place_words(of.excess);
   if (of.lost_A > 0.0) {
     text += fmt::format("{}allows up to {:.3f} A less elsewhere", text.empty() ? "" : "; ", of.lost_A);
   }
-  return text.empty() ? fmt::format("within {} of a fresh table", derate::kIgnored) : text;
+  return text.empty() ? fmt::format("within {} of a fresh table", derate::kIgnored) : text + version_words(of.other_version, outcome);
 }
 
-std::string say(const check::LostBasis& of, const check::Outcome& /*outcome*/) { return place_words(of.lost); }
+std::string say(const check::LostBasis& of, const check::Outcome& outcome) {
+  return place_words(of.lost) + version_words(of.other_version, outcome);
+}
 
 std::string say(const check::TimeAboveBasis& of, const check::Outcome& /*outcome*/) {
   return fmt::format("counted above {:.0f} °C over {:.0f} s; the nominal winding reaches {:.1f} °C", of.temperature_C, of.duration_s,

@@ -87,8 +87,9 @@ std::string say(const check::ObserverDiffers& of, const check::Limit& /*limit*/)
   const std::string table = of.table.string();
   return fmt::format(
       "{0}:{1}: the observer differs from that of a fresh header in {2}, so the table has another meaning: \"{3}\", fresh \"{4}\"; "
-      "`heatsoak derate --check {0}` lists them; generate the header again",
-      table, of.first.line, base::counted(of.count, "place"), of.first.text, of.first.other_text);
+      "`heatsoak derate --check {0}` lists them; generate the header again{5}",
+      table, of.first.line, base::counted(of.count, "place"), of.first.text, of.first.other_text,
+      of.other_version.empty() ? "" : "; " + upgrade_words(of.other_version));
 }
 
 std::string say(const check::NothingToLint& /*of*/, const check::Limit& /*limit*/) {

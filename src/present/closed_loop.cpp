@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/counted.h"
 #include "present/evaluation.h"
 #include "present/verdict_words.h"
 #include "simulate/sensing.h"
@@ -62,7 +63,9 @@ Text sentence(const simulate::ClosedLoopRank& rank, std::string_view prefix) {
 void add_closed_loop_headline(Document& document, const simulate::EvaluationAnswer& answer) {
   const std::vector<simulate::ClosedLoopRank>& ranks = answer.ranks;
   const auto passed = std::ranges::count(ranks, select::Verdict::pass, &simulate::ClosedLoopRank::verdict);
-  document.headline.push_back({fmt::format("Driven in a closed loop, {} {}; this decides ranking and exit code.",
+  const std::size_t games = ranks.front().drives.games.size();
+  document.headline.push_back({fmt::format("Driven in a closed loop, nominal values{}: {} {}; this decides ranking and exit code.",
+                                           games > 0 ? fmt::format(", {}", base::counted(games, "game")) : "",
                                            passing_text(passed, ranks.size(), "motor"), answer.duty.id),
                                passed == 0 ? Tone::bad : Tone::good});
   document.headline.push_back(sentence(ranks.front(), ranks.size() > 1 ? "Best: " : ""));

@@ -143,7 +143,12 @@ void add_sensor(Document& document, const derate::Derating& derating) {
                                 "limit.",
                                 plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over,
                                 derating.options.guarantee.samples));
-  if (plan.resistance) {
+  if (!plan.resistance) {
+    document.add_note(
+        Severity::warning,
+        "Measure the air at the motor as well: without it the guard does not notice a thermistor that fell off and reads the air, "
+        "or is stuck near it.");
+  } else {
     document.add_note(Severity::note, fmt::format("Readings need {:.2f} A at rest and {:.3f} A more per rad/s.",
                                                   plan.resistance->least_current_A, plan.resistance->current_per_speed_A_s_per_rad));
   }
@@ -257,14 +262,17 @@ void add_table_check(Document& document, const derate::Derating& derating, const
     document.add_note(Severity::note,
                       fmt::format("The table was written for the robot {}, this is {}.", check.committed.robot_id, derating.robot_id));
   }
-  if (!check.found.holds() && !check.committed.version.empty() && check.committed.version != base::program_version()) {
-    document.add_note(Severity::note,
-                      fmt::format("The table was written by heatsoak {}, this program is {}: an upgrade may explain the difference.",
-                                  check.committed.version, base::program_version()));
+  if (!found.holds() && !found.other_version.empty()) {
+    document.add_note(Severity::note, fmt::format("The table was {}.", upgrade_words(found.other_version)));
   }
 }
 
 }  // namespace
+
+std::string upgrade_words(const std::string& other_version) {
+  return fmt::format("written by heatsoak {}, this program is {}: an upgrade may explain the difference", other_version,
+                     base::program_version());
+}
 
 std::string limit_range_words(const derate::Derating& derating) {
   return derating.rules.limits.winding_C < derating.nominal.winding_limit_C

@@ -14,6 +14,9 @@ std::string limit_range_words(const derate::Derating& derating);
 /// States how the sensor of a committed header differs, and what to do.
 std::string words_of(const derate::SensorDifference& difference);
 
+/// Returns "written by heatsoak 0.1.0, this program is 0.2.0: an upgrade may explain the difference".
+std::string upgrade_words(const std::string& other_version);
+
 /// Returns the document. Changes since an earlier table was written come last: unsafe ones are warnings, the others notes.
 /// `out` is the name of the written file, which may be empty: a name that suits another format gives a warning.
 Document derating_document(const derate::DeratingJob& job, const derate::DeratingAnswer& answer, const std::string& out = {});

@@ -22,7 +22,7 @@ inline derate::TableComparison compared(const Check& check, Computations& comput
   }
   derate::TableComparison found = derate::compare(committed, computations.derating(check, check.derate));
   if (!found.differing.empty()) {
-    throw NotEvaluated(ObserverDiffers{check.table, found.differing.front(), found.differing.size()});
+    throw NotEvaluated(ObserverDiffers{check.table, found.differing.front(), found.differing.size(), found.other_version});
   }
   return found;
 }

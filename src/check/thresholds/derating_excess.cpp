@@ -5,7 +5,7 @@ namespace {
 
 Measured measure_derating_excess(const Check& check, Computations& computations) {
   const derate::TableComparison found = compared(check, computations);
-  return {found.excess.difference_A, 0.0, ExcessBasis{found.excess, found.lost.difference_A}};
+  return {found.excess.difference_A, 0.0, ExcessBasis{found.excess, found.lost.difference_A, found.other_version}};
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ ThresholdType derating_lost() {
       .takes = {Setting::conditions, Setting::derate},
       .loosest = largest_difference,
       .measure = [](const Check& check, Computations& computations) -> Measured {
-        const derate::TablePlace lost = compared(check, computations).lost;
-        return {lost.difference_A, 0.0, LostBasis{lost}};
+        const derate::TableComparison found = compared(check, computations);
+        return {found.lost.difference_A, 0.0, LostBasis{found.lost, found.other_version}};
       }};
 }
 

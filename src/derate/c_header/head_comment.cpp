@@ -84,8 +84,10 @@ std::string head_comment(const Source& source) {
              " * Every {1:.9g} s: out = {0}_step(&motor, &in);\n"
              " *   then |current| <= out.allowed_current_A until the next call.\n"
              " * A state that is kept in RAM continues after a reset.\n"
-             " * GCC: compile with -fno-math-errno, else the square root of a negative number would call sqrtf of the C library (-lm). "
-             "*/\n",
+             " * GCC with an FPU: compile with -fno-math-errno, else the square root of a negative number would call sqrtf of the C "
+             "library "
+             "(-lm).\n"
+             " * Without an FPU, link -lm in any case. */\n",
              source.prefix, derating.options.period_s);
 }
 
