@@ -351,7 +351,9 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   options.folder = folder.path();
   const Words derate{"derate", "--robot", "roboteam_twente_v2024", "--motor", "maxon_ecx_flat_32l_48v", "--samples", "60"};
   const Words sensor{"--thermistor", "stator", "--thermistor-accuracy", "1.5K", "--thermistor-lag", "3s"};
-  ASSERT_EQ(run(derate + sensor + Words{"--out", "sensed.h"}, options).exit_code, 0);
+  const ProgramRun sensed = run(derate + sensor + Words{"--out", "sensed.h"}, options);
+  ASSERT_EQ(sensed.exit_code, 0);
+  EXPECT_THAT(sensed.out, HasSubstr("Measure the air at the motor as well"));
   ASSERT_EQ(run(derate + Words{"--out", "plain.h"}, options).exit_code, 0);
   const ProgramRun without = run(derate + Words{"--check", "sensed.h"}, options);
   EXPECT_EQ(without.exit_code, 2);

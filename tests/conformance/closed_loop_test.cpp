@@ -44,6 +44,7 @@ TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
   ASSERT_EQ(one.exit_code, 0) << one.err;
   EXPECT_EQ(one.out, run(words + Words{"--threads", "2"}).out);
   EXPECT_THAT(one.err, HasSubstr("Closed loop: 2 games driven by the drive core, seeds 1 to 2"));
+  EXPECT_THAT(one.err, HasSubstr("Driven in a closed loop, nominal values, 2 games: "));
   const json motors = one.json().at("motors");
   ASSERT_EQ(motors.size(), 2U);
   double margin_before_K = 1e9;

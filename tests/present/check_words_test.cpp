@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/version.h"
 #include "estimation/findings.h"
 #include "present/failure_words.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const check::Limit kPeakLimit{check::find_threshold("winding_peak_p95"), 70.0, "degC", "at most 70 degC", {"a.toml", 9, 20}};
@@ -68,9 +70,10 @@ TEST(CheckWords, advise_more_samples_only_where_the_limit_is_broken) {
   EXPECT_EQ(basis_words(outcome(kShareLimit, 0.04, basis)), "0 of 32 samples over, bound of 97.5 % confidence");
   basis.games = 4;
   basis.samples_needed.reset();
-  EXPECT_EQ(explanation_words(outcome(kShareLimit, 0.5, basis)),
-            "50 % is above the limit of 5 %: 0 of 32 samples over, bound of 97.5 % confidence by 4 games; no number of samples can meet the "
-            "limit with this share");
+  EXPECT_EQ(
+      explanation_words(outcome(kShareLimit, 0.5, basis)),
+      "50 % is above the limit of 5 %: 0 of 32 samples over, bound of 97.5 % confidence by 4 games; no number of samples can meet the "
+      "limit with this share");
 }
 
 TEST(CheckWords, name_the_part_of_a_number_that_is_compared) {
@@ -150,6 +153,19 @@ TEST(CheckWords, count_the_places_where_an_observer_differs) {
   const auto words = [](std::size_t count) { return words_of(check::ObserverDiffers{"guard.h", {7, "a", "b"}, count}, kPeakLimit); };
   EXPECT_THAT(words(1), HasSubstr("guard.h:7: the observer differs from that of a fresh header in 1 place, so"));
   EXPECT_THAT(words(3), HasSubstr("in 3 places, so"));
+}
+
+TEST(CheckWords, tell_an_upgrade_from_a_change_where_a_committed_table_fails) {
+  const check::Limit limit{check::find_threshold("derating_excess"), 0.0, "A", "at most 0 A", {"a.toml", 9, 20}};
+  derate::TablePlace place;
+  place.difference_A = 0.3;
+  const check::ExcessBasis old{place, 0.0, "0.0.9"};
+  EXPECT_THAT(basis_words(outcome(limit, 0.3, old)), HasSubstr("; written by heatsoak 0.0.9, this program is "));
+  EXPECT_THAT(basis_words(outcome(limit, 0.3, check::ExcessBasis{place, 0.0, {}})), Not(HasSubstr("written by")));
+  EXPECT_THAT(basis_words(outcome(limit, 0.0, old)), Not(HasSubstr("written by"))) << "the limit holds";
+  EXPECT_THAT(words_of(check::ObserverDiffers{"guard.h", {7, "a", "b"}, 1, "0.0.9"}, limit),
+              EndsWith("generate the header again; written by heatsoak 0.0.9, this program is " + std::string(base::program_version()) +
+                       ": an upgrade may explain the difference"));
 }
 
 }  // namespace
