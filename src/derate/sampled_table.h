@@ -11,8 +11,8 @@ namespace heatsoak::derate {
 inline constexpr double kCounted_ratio = 2.0;
 
 /// Currents on a full grid that contains the table's breakpoints up to the winding's limit; above it the reader allows no current. The
-/// current interpolated linearly along all axes is never above the table's. Where the table reaches 0 inside of a cell, or falls more
-/// steeply at its cold end, the samples are therefore below the table.
+/// current interpolated linearly along all axes is at most 0.1 mA above the table's. Where the table reaches 0 inside of a cell, or falls
+/// more steeply at its cold end, the samples are therefore below the table.
 struct SampledTable {
   std::vector<double> speed_rad_per_s;  ///< ends where the table's current is 0
   std::vector<double> stator_C;

@@ -17,7 +17,8 @@ std::string write_csv(const Derating& derating) {
   std::string text =
       provenance_lines(derating, "#") +
       fmt::format(
-          "# Interpolate allowed_current_A linearly along the first three columns. The result is never above the table of the C header, "
+          "# Interpolate allowed_current_A linearly along the first three columns. The result is at most 0.1 mA above the table of the C "
+          "header, "
           "and\n"
           "# at most {} % below it, from {} A up. Below the first value of a column use its first value.\n"
           "# Above the last winding_C or speed_rad_per_s the current is 0. Each kelvin of the stator above the last stator_C counts as\n"
