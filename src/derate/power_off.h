@@ -43,7 +43,7 @@ struct PowerOffReport {
   std::vector<PowerOffCase> cases;
 };
 /// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer, which counts
-/// as a motor at its limit. The state is saved at the moment of the loss, and there is no sensor on the board.
+/// as a motor at its limit. Assumes that the state is saved at the moment of the loss, and that the board has no sensor.
 PowerOffReport power_off_report(const Derating& derating);
 
 /// Larger than the last digit of a temperature in single precision and in the integer form.

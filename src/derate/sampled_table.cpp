@@ -73,9 +73,10 @@ class Sampling {
   }
 
   SampledTable lowered() {
-    constexpr int kMostRounds = 100;
-    for (int round = 0; round < kMostRounds; ++round) {
-      bool has_lowered = false;
+    // Ends, because each round lowers a current by at least kRounding_A or to 0, and none becomes negative.
+    bool has_lowered = true;
+    while (has_lowered) {
+      has_lowered = false;
       for (const SampleCell& cell : cells_) {
         for_each_point(cell, [&](double exact_A, double shown_A, const std::array<double, 8>& weight) {
           if (shown_A > exact_A + kRounding_A) {
@@ -83,9 +84,6 @@ class Sampling {
             has_lowered = true;
           }
         });
-      }
-      if (!has_lowered) {
-        break;
       }
     }
     constexpr double kPerAmpere = 1e5;

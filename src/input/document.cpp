@@ -167,7 +167,7 @@ base::Location place_of(const std::filesystem::path& path, std::string_view key)
       key.remove_prefix(std::min(dot + 1, key.size()));
     }
   } catch (const base::Failure&) {
-    // Callers report a problem of their own here; a broken file is reported by whoever reads its values.
+    // A caller that needs only the place reports its own problem; the reader of the values reports a broken file.
   }
   return place;
 }

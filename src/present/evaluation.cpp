@@ -305,7 +305,7 @@ std::string rest_words(const std::vector<select::RestOfHotMotor>& rests, const s
   std::string text;
   for (std::size_t i = 0; i < rests.size(); ++i) {
     const select::RestOfHotMotor& each = rests[i];
-    // Of equal rests the one with the longest play states the most.
+    // If rests are equal, only the one with the longest play is stated.
     const bool is_repeated = i + 1 < rests.size() && each.all_s && rests[i + 1].all_s == each.all_s;
     if (is_repeated || each.all_s == 0.0) {
       continue;

@@ -67,7 +67,7 @@ TEST(DerateCommand, StatesTheHeatThatAFormatOmits) {
   const ProgramRun mujoco = run(kDerateEcx + motor + Words{"--to", "mujoco", "--out", "motor.xml"}, here(folder));
   EXPECT_EQ(mujoco.exit_code, 0) << mujoco.err;
   EXPECT_THAT(mujoco.out, HasSubstr("The winding in the mujoco file may be too cold"));
-  // As MujocoExporter.StatedRiseIsReachedWhenALastingCurrentHeatsTheTurningMotorToItsLimit computes it.
+  // The value is tested by MujocoExporter.StatedRiseIsReachedWhenALastingCurrentHeatsTheTurningMotorToItsLimit.
   EXPECT_THAT(content_of(folder.path() / "motor.xml"), HasSubstr("K for no-load loss, which"));
   const ProgramRun header = run(kDerateEcx + motor + Words{"--out", "guard.h"}, here(folder));
   EXPECT_THAT(header.out, Not(HasSubstr("mujoco")));

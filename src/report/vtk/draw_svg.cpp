@@ -252,14 +252,12 @@ class Lettering : public vtkContextItem {
 
   /// Paints the white rectangle behind a text that is not upright.
   static void paint_plate(vtkContext2D* painter, const PlacedText& text) {
-    constexpr double kAscent = 0.85;  // of the letters, per size
-    constexpr double kDescent = 0.25;
     const double width_px = text_width_px(text.text, text.style);
     const double behind = text.anchor == Anchor::left ? 0.0 : text.anchor == Anchor::middle ? 0.5 : 1.0;
     const auto left_px = static_cast<float>(text.x_px - behind * width_px);
     const auto right_px = left_px + static_cast<float>(width_px);
-    const auto bottom_px = static_cast<float>(text.y_px - kDescent * text.style.size_px);
-    const auto top_px = static_cast<float>(text.y_px + kAscent * text.style.size_px);
+    const auto bottom_px = static_cast<float>(text.y_px - kDescent_ratio * text.style.size_px);
+    const auto top_px = static_cast<float>(text.y_px + kAscent_ratio * text.style.size_px);
     float corners[] = {left_px, bottom_px, left_px, top_px, right_px, bottom_px, right_px, top_px};
     painter->GetBrush()->SetColor(255, 255, 255, 255);
     painter->DrawQuadStrip(corners, 4);

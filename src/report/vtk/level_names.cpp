@@ -13,7 +13,7 @@ namespace heatsoak::report {
 namespace {
 
 constexpr TextStyle kLimitStyle{.size_px = 12, .is_bold = false, .color = {kLimitColor[0], kLimitColor[1], kLimitColor[2]}};
-constexpr double kDescent_px = 3.0;  // of letters below the baseline
+constexpr double kDescent_px = kDescent_ratio * kLimitStyle.size_px;
 
 /// Rectangle; y counts downwards.
 struct Box {
@@ -120,7 +120,7 @@ class LevelNames {
   [[nodiscard]] Box on_line(double line_px, double width_px) const {
     constexpr double kHalfCapital_px = 0.36 * kLimitStyle.size_px;
     const double baseline_px = line_px + kHalfCapital_px;
-    return {space_.last_px - width_px, space_.last_px, baseline_px - 0.85 * kLimitStyle.size_px, baseline_px + kDescent_px};
+    return {space_.last_px - width_px, space_.last_px, baseline_px - kAscent_ratio * kLimitStyle.size_px, baseline_px + kDescent_px};
   }
 
   [[nodiscard]] bool is_top_near(double line_px) const { return line_px - vertical_.high_px < kLimitStyle.size_px + 1.0; }

@@ -12,6 +12,10 @@ struct TextStyle {
   unsigned char color[3] = {0x22, 0x22, 0x22};
 };
 
+/// Heights of letters above and below the baseline, relative to the size of the text.
+inline constexpr double kAscent_ratio = 0.85;
+inline constexpr double kDescent_ratio = 0.25;
+
 /// Returns valid UTF-8 in one line; invalid bytes, such as in file names, and control characters are replaced.
 std::string printable(const std::string& text);
 
