@@ -144,10 +144,9 @@ void add_sensor(Document& document, const derate::Derating& derating) {
                                 plan.most_gain_A, plan.sensor_fault_nominal_C, plan.sensor_fault_warm_C, plan.sensor_fault_over,
                                 derating.options.guarantee.samples));
   if (!plan.resistance) {
-    document.add_note(
-        Severity::warning,
-        "Measure the air at the motor as well: without it the guard does not notice a thermistor that fell off and reads the air, "
-        "or is stuck near it.");
+    document.add_note(Severity::warning,
+                      "Measure the air temperature at the motor as well: without it the guard does not notice a thermistor that fell off, "
+                      "or one that is stuck near the air temperature.");
   } else {
     document.add_note(Severity::note, fmt::format("Readings need {:.2f} A at rest and {:.3f} A more per rad/s.",
                                                   plan.resistance->least_current_A, plan.resistance->current_per_speed_A_s_per_rad));

@@ -353,7 +353,7 @@ TEST(DerateCheck, NamesTheOptionsOfTheSensor) {
   const Words sensor{"--thermistor", "stator", "--thermistor-accuracy", "1.5K", "--thermistor-lag", "3s"};
   const ProgramRun sensed = run(derate + sensor + Words{"--out", "sensed.h"}, options);
   ASSERT_EQ(sensed.exit_code, 0);
-  EXPECT_THAT(sensed.out, HasSubstr("Measure the air at the motor as well"));
+  EXPECT_THAT(sensed.out, HasSubstr("Measure the air temperature at the motor as well"));
   ASSERT_EQ(run(derate + Words{"--out", "plain.h"}, options).exit_code, 0);
   const ProgramRun without = run(derate + Words{"--check", "sensed.h"}, options);
   EXPECT_EQ(without.exit_code, 2);

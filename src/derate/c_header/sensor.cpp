@@ -238,7 +238,7 @@ static inline float @_current_with_sensor_A(@_sensed_state *state, float speed_r
 
 /* Replaces @_step. reading_C: reading of the sensor; NAN if there is none in this period.
    Once the sensor is dropped or an input is unknown, the current falls to that of @_step at once.
-   Measure ambient_C: without it (the hottest declared air) a sensor that fell off and reads the air, or is stuck near ambient_C, is not dropped. The motor may then exceed its limit; SENSOR_MOST_GAIN_A still bounds the additional current. */
+   Measure ambient_C: without it (the hottest declared air) a sensor that fell off, or is stuck near ambient_C, is not dropped. The motor may then exceed its limit; SENSOR_MOST_GAIN_A still bounds the additional current. */
 static inline @_sensed_output @_step_with_sensor(@_sensed_state *state, const @_input *measured, float reading_C) {
   @_sensed_output out;
   float last_C[@NODES@];
