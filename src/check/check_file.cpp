@@ -64,8 +64,7 @@ class CheckReader {
  private:
   /// Returns a name that is a path relative to the check file's folder; other names are unchanged.
   [[nodiscard]] std::string from_here(const std::string& name) const {
-    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".toml");
-    return is_path ? (folder_ / name).lexically_normal().string() : name;
+    return input::is_path(name) ? (folder_ / name).lexically_normal().string() : name;
   }
 
   /// Calls `read`. Reports problems of the name at its place in the check file, and problems inside of another file at their own place.
@@ -179,7 +178,7 @@ class CheckReader {
   }
 
   std::optional<motor::Motor> robots_motor() {
-    const std::optional<fs::path> file = existing(Setting::motor, "robot", folders_.motors, "motor", check_.robot->drive.motor);
+    const std::optional<fs::path> file = existing(Setting::motor, "robot", folders_.motors, "motor", check_.robot->drive.motor_name());
     return file ? named("robot", [&] { return motor::read_motor(*file); }) : std::nullopt;
   }
 

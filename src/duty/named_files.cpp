@@ -101,7 +101,7 @@ motor::Motor motor_named(const input::DataFolders& folders, const std::string& n
 }
 
 std::optional<motor::Motor> own_motor(const input::DataFolders& folders, const robot::Robot& robot) {
-  return NamedFiles(folders).motor_as_written(robot.drive.motor);
+  return NamedFiles(folders).motor_as_written(robot.drive.motor_name());
 }
 
 robot::Robot robot_named(const input::DataFolders& folders, const std::string& name) {

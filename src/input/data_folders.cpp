@@ -77,11 +77,13 @@ std::vector<std::string> ids_in(const fs::path& folder) {
   return ids;
 }
 
+bool is_path(std::string_view name) { return name.find('/') != std::string_view::npos || name.ends_with(".toml"); }
+
 fs::path file_of(const fs::path& folder, std::string_view kind, std::string_view name) {
   const std::vector<std::string> ids = ids_in(folder);
   std::error_code error;
   const bool is_table = name.ends_with(".csv") && fs::exists(name, error);
-  if (name.find('/') != std::string_view::npos || name.ends_with(".toml") || is_table) {
+  if (is_path(name) || is_table) {
     const std::string stem = fs::path(name).stem().string();
     if (!fs::exists(name, error) && fs::path(name).filename() == name && std::ranges::find(ids, stem) != ids.end()) {
       throw base::Failure(base::ExitCode::bad_input,

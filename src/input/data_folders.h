@@ -24,8 +24,10 @@ struct DataFolders {
 /// Returns the stems of the *.toml files in a folder, sorted; empty if the folder cannot be read.
 std::vector<std::string> ids_in(const std::filesystem::path& folder);
 
-/// Returns the path of the file `name` in the folder. A name with a '/' or ending in ".toml", and an existing CSV file, is a path of the
-/// user and returned as it is. Throws Failure (bad_input) with "did you mean" for an unknown name. `kind` is used in the message: "motor".
+/// Returns whether a name is the path of a file, not an id: it has a '/' or ends in ".toml".
+bool is_path(std::string_view name);
+
+/// Returns the path of the file `name` in the folder. A path (is_path()) or an existing CSV file is returned as it is. Throws Failure (bad_input) with "did you mean" for an unknown name. `kind` is used in the message: "motor".
 std::filesystem::path file_of(const std::filesystem::path& folder, std::string_view kind, std::string_view name);
 
 /// Returns `name`, or the log shipped with the program if `name` is relative and exists only there.

@@ -88,6 +88,7 @@ enum class LintWords {
   acceleration_large,
   missing_value,
   unknown_motor,
+  no_motor_file,
   emf_peak_of_phase,
   emf_rms_of_phase,
   emf_rms_between_terminals,

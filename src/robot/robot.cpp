@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/quantity.h"
+#include "input/data_folders.h"
 #include "input/document.h"
 
 namespace heatsoak::robot {
@@ -270,12 +271,21 @@ void read_wheels(const input::Value& root, input::Reader& top, Robot& robot, bas
   wheels->finish();
 }
 
+/// Reads the robot's own motor: an id, or the path of a motor file, relative to the robot's file.
+void read_own_motor(input::Reader& drive, Robot& robot) {
+  robot.drive.motor = drive.text("motor", input::Need::required).value_or("");
+  if (input::is_path(robot.drive.motor)) {
+    robot.drive.motor_file = std::filesystem::absolute(robot.file.parent_path() / robot.drive.motor).lexically_normal();
+    robot.drive.motor = robot.drive.motor_file->stem().string();
+  }
+}
+
 void read_drive(input::Reader& top, Robot& robot) {
   std::optional<input::Reader> drive = top.table("drive", input::Need::required);
   if (!drive) {
     return;
   }
-  robot.drive.motor = drive->text("motor", input::Need::required).value_or("");
+  read_own_motor(*drive, robot);
   robot.drive.gear_ratio =
       drive->quantity({"gear_ratio", "", base::Range::between(0.1, 500.0), "number of motor turns per wheel turn"}, input::Need::required)
           .value_or(1.0);

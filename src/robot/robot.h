@@ -35,7 +35,8 @@ struct RobotWheels {
 };
 
 struct RobotDrive {
-  std::string motor;  ///< id of the motor that the robot is built with
+  std::string motor;                                     ///< id of the motor that the robot is built with; "none" if no file describes it
+  std::optional<std::filesystem::path> motor_file = {};  ///< absolute path of that motor's file if the robot names it by a path
   double gear_ratio = 1.0;
   double gear_efficiency = 1.0;
   std::optional<double> voltage_limit_V = {};
@@ -46,6 +47,8 @@ struct RobotDrive {
   std::optional<double> control_rate_Hz = {};
   std::optional<double> command_rate_Hz = {};
 
+  /// Returns the name by which the motor's file is found: its path, or the id.
+  [[nodiscard]] std::string motor_name() const { return motor_file ? motor_file->string() : motor; }
   /// Returns the part of a voltage from 0 V up that the driver applies.
   [[nodiscard]] double limited_V(double voltage_V) const;
   /// Returns the part of a current of either sign that the driver permits.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 #include "input/document.h"
 #include "robot/assumed_friction.h"
@@ -253,14 +255,25 @@ void add_missing_values(const Robot& robot, std::vector<motor::LintFinding>& fin
   add_lacking(robot, kClosedLoop, LintWords::closed_loop_needs_it, findings);
 }
 
+/// Returns what is wrong with the name of the robot's motor, if anything.
+std::optional<LintClause> unknown_motor(const Robot& robot, std::span<const std::string> known_motors) {
+  if (robot.drive.motor_file) {
+    std::error_code error;
+    const bool is_there = std::filesystem::exists(*robot.drive.motor_file, error);
+    return is_there ? std::nullopt : std::optional(LintClause{LintWords::no_motor_file, {robot.drive.motor_name()}});
+  }
+  if (robot.drive.motor == "none" || std::ranges::find(known_motors, robot.drive.motor) != known_motors.end()) {
+    return std::nullopt;
+  }
+  return LintClause{LintWords::unknown_motor, {robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors)}};
+}
+
 }  // namespace
 
 std::vector<motor::LintFinding> lint(const Robot& robot, std::span<const std::string> known_motors) {
   std::vector<motor::LintFinding> findings;
-  if (robot.drive.motor != "none" && std::ranges::find(known_motors, robot.drive.motor) == known_motors.end()) {
-    findings.push_back(
-        finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor",
-                LintClause{LintWords::unknown_motor, {robot.drive.motor, base::did_you_mean(robot.drive.motor, known_motors)}}));
+  if (std::optional<LintClause> unknown = unknown_motor(robot, known_motors)) {
+    findings.push_back(finding(robot, motor::LintFinding::Level::warning, "motor", "drive.motor", std::move(*unknown)));
   }
   std::ranges::move(implausible_values(robot), std::back_inserter(findings));
   add_missing_values(robot, findings);

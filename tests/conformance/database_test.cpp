@@ -96,6 +96,41 @@ TEST(Database, two_motors_of_one_id_are_ambiguous) {
   EXPECT_THAT(result.err, testing::HasSubstr("two motors with the same id, 'x'"));
 }
 
+TEST(Database, a_robot_may_name_the_file_of_its_motor_beside_it) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "team");
+  std::string robot = content_of(kSource / "robot_core/robots/roboteam_twente_v2024.toml");
+  const std::string id = "motor = \"maxon_ecx_flat_32l_48v\"";
+  robot.replace(robot.find(id), id.size(), "motor = \"my_motor.toml\"");
+  write(folder.path() / "team/robot.toml", robot);
+  RunOptions outside;
+  outside.folder = folder.path();
+  const ProgramRun missing = run({"lint", "team/robot.toml"}, outside);
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.out, testing::AllOf(HasSubstr("there is no file"), HasSubstr("team/my_motor.toml"))) << missing.err;
+  fs::copy_file(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml", folder.path() / "team/my_motor.toml");
+  EXPECT_EQ(run({"lint", "team/robot.toml"}, outside).exit_code, 0);
+  const ProgramRun ranked =
+      run({"evaluate", "--robot", "team/robot.toml", "--duty", "paper_intermittent", "--samples", "0", "--quiet"}, outside);
+  EXPECT_THAT(ranked.out, HasSubstr("robot's own my_motor")) << ranked.err;
+  write(folder.path() / "check.toml",
+        "[[check]]\nname = \"own motor\"\nrobot = \"team/robot.toml\"\nduty = \"paper_intermittent\"\nsamples = \"500\"\n"
+        "[check.limits]\nwinding_peak_p95 = \"at most 125 degC\"\n");
+  const ProgramRun checked = run({"check", "check.toml"}, outside);
+  EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("own motor (my_motor, robot, paper_intermittent)"));
+}
+
+TEST(Database, an_unknown_motor_of_a_robot_names_what_is_expected) {
+  const TemporaryFolder folder;
+  std::string robot = content_of(kSource / "robot_core/robots/tigers_v2020.toml");
+  const std::string id = "motor = \"nanotec_df45l024048_a2\"";
+  robot.replace(robot.find(id), id.size(), "motor = \"nanotec_df45l024048_a3\"");
+  write(folder.path() / "robot.toml", robot);
+  EXPECT_THAT(run({"lint", (folder.path() / "robot.toml").string()}).out,
+              testing::ContainsRegex("expected an id of `heatsoak list motors`.*did you mean 'nanotec_df45l024048_a2'"));
+}
+
 TEST(Database, a_broken_file_is_reported_and_not_skipped) {
   const TemporaryFolder folder;
   fs::copy_file(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml", folder.path() / "good.toml");

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -68,7 +69,11 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& se
   const std::optional<robot::Robot> robot = named.robot(options.robot);
   const std::optional<duty::Duty> duty = named.duty(options.duty);
   simulate::EvaluationJob job = options.job;
-  job.motors = select::named_candidates({listed_motors(options), options.model, options.conditions}, named);
+  std::vector<std::string> motors = listed_motors(options);
+  if (!options.motors && options.model.empty() && robot && robot->drive.motor_file) {
+    motors.push_back(robot->drive.motor_name());  // the data base lacks it
+  }
+  job.motors = select::named_candidates({std::move(motors), options.model, options.conditions}, named);
   named.throw_if_any();
   if (job.motors.empty()) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("there is no motor file in {}", folders.motors.string()));
