@@ -288,23 +288,4 @@ Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRule
   return DiagnosisReport(input, attribution::select_effects({input.model, input.train, input.usual, input.progress}, rules)).result();
 }
 
-HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout) {
-  HoldoutScore score;
-  if (holdout.empty()) {
-    return score;
-  }
-  const estimation::Model& after = diagnosis.selection.after.model;
-  if (input.turns_within_rows) {
-    std::ranges::transform(holdout, holdout.begin(), estimation::turning_within_rows);
-  }
-  estimation::set_columns(holdout, after.columns);
-  score.before = estimation::open_loop_errors(input.model, holdout, diagnosis.runs);
-  score.refitted = estimation::open_loop_errors(diagnosis.selection.own.model, holdout, diagnosis.runs);
-  score.after = estimation::open_loop_errors(after, holdout, diagnosis.runs);
-  score.file = errors_of_file(after, holdout, diagnosis.runs);
-  score.beyond_training = beyond_fitted(diagnosis.runs, holdout);
-  score.runs = std::move(holdout);
-  return score;
-}
-
 }  // namespace heatsoak::diagnosis

@@ -8,7 +8,6 @@
 
 #include "attribution/scan_term.h"
 #include "base/job_progress.h"
-#include "calibration/forecast/prediction.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/found_effects.h"
 #include "estimation/free_run_errors.h"
@@ -19,7 +18,7 @@ namespace heatsoak::diagnosis {
 enum class DiagnosisVerdict { effect_found, nothing_missing, unexplained, not_identifiable };
 std::string_view to_string(DiagnosisVerdict verdict);
 
-/// Input of a diagnosis. It contains no hold-out run: score_holdout() scores these after every decision.
+/// Input of a diagnosis. It contains no hold-out run: these are scored after every decision (holdout_score.h).
 struct DiagnosisInput {
   estimation::Model model;  ///< calibrated model
   std::vector<estimation::MeasuredRun> train;
@@ -115,19 +114,6 @@ struct Diagnosis {
   attribution::Selection selection;
 };
 
-/// Errors of free-running models on hold-out runs, which influenced no decision. score_holdout() fills them with those of the models of the
-/// diagnosis; score_files() then replaces three of them by those of the motor files.
-struct HoldoutScore {
-  std::vector<estimation::MeasuredRun> runs;
-  estimation::Errors before;    ///< original motor file, by score_files(); before that, the calibrated model
-  estimation::Errors refitted;  ///< model with only its own parameters refitted to the training runs
-  estimation::Errors after;     ///< extended motor file, by score_files(); before that, the model with its effects and run deviations
-  estimation::Errors file;      ///< same values as `after`, by score_files(); before that, the final model without run deviations
-  /// Predictions of the original and the extended motor file; set by score_files().
-  std::vector<calibration::PredictedRun> runs_before, runs_after;
-  std::vector<BeyondTraining> beyond_training;
-};
-
 /// True if the error is larger than the other by more than 10 % and by more than the threshold `matters_K`.
 bool is_plainly_worse(double error_K, double than_K);
 
@@ -137,9 +123,5 @@ void settle_turning_rows(DiagnosisInput& input);
 
 /// Runs the whole diagnosis on the training runs. Throws Failure (numerics_failed) if the model cannot be simulated along them.
 Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules);
-
-/// Scores `holdout` (runs as read from their logs) with the models of a finished diagnosis. The diagnosis must not depend on the result.
-/// Returns an empty score if there are no hold-out runs.
-HoldoutScore score_holdout(const DiagnosisInput& input, const Diagnosis& diagnosis, std::vector<estimation::MeasuredRun> holdout);
 
 }  // namespace heatsoak::diagnosis

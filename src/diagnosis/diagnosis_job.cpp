@@ -8,9 +8,11 @@
 #include "base/collected_failures.h"
 #include "base/diagnostic.h"
 #include "calibration/forecast/forecast.h"
+#include "diagnosis/coverage.h"
 #include "diagnosis/left_out_band.h"
 #include "estimation/log_columns.h"
 #include "estimation/open_loop.h"
+#include "estimation/turning_rows.h"
 
 namespace heatsoak::diagnosis {
 namespace {
@@ -153,8 +155,13 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
     answer.band = size_of_band(answer.motor, fitted, predicting);
   }
   progress.begin(kScoring);
-  answer.score = score_holdout(input, answer.diagnosis, runs_of(held_out, how, findings));
-  score_files(job.motor, answer.motor, held_out, predicting, answer.score);
+  answer.score = score_holdout({job.motor, refitted_motor(job.motor, model, answer.diagnosis), answer.motor}, held_out, predicting);
+  answer.score.runs = runs_of(held_out, how, findings);
+  if (input.turns_within_rows) {
+    std::ranges::transform(answer.score.runs, answer.score.runs.begin(), estimation::turning_within_rows);
+  }
+  estimation::set_columns(answer.score.runs, columns);
+  answer.score.beyond_training = beyond_fitted(answer.diagnosis.runs, answer.score.runs);
   std::ranges::move(estimation::columns_lacking(columns, held_out), std::back_inserter(findings));
   add_fitted_holdouts(job.motor, held_out, findings);
   return answer;

@@ -9,6 +9,7 @@
 #include "calibration/admission.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/findings.h"
+#include "diagnosis/holdout_score.h"
 #include "diagnosis/model_file.h"
 #include "recording/named_logs.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "calibration/forecast/prediction.h"
 #include "estimation/left_out_runs.h"
 
 namespace heatsoak::diagnosis {

@@ -133,8 +133,8 @@ motor::MotorEffect motor_effect(const FoundEffect& found, const estimation::Post
 }
 
 /// Writes the fitted values, intervals and correlations of the file's parameters.
-void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
-  const estimation::Posterior& fit = diagnosis.selection.after;
+void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const estimation::Posterior& fit,
+                    const std::vector<estimation::MeasuredRun>& runs) {
   const auto free = model.model.network_count();
   const Eigen::VectorXd moved = fit.model.theta().head(free) - model.model.theta();
   const Eigen::MatrixXd covariance = fit.covariance.topLeftCorner(free, free);
@@ -178,7 +178,7 @@ void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const Diagnos
   together.latent_flux_W = flux.rms_W;
   together.latent_flux_time_scale_s = flux.time_scale_s;
   std::map<std::string, double> noise_K;
-  for (const estimation::MeasuredRun& run : diagnosis.runs) {
+  for (const estimation::MeasuredRun& run : runs) {
     for (const estimation::Sensor& sensor : run.sensors) {
       noise_K[sensor.node] = std::max(noise_K[sensor.node], sensor.noise_K);
     }
@@ -255,22 +255,16 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   return out;
 }
 
-void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
-                 const calibration::PredictionOptions& options, HoldoutScore& score) {
-  if (holdout.empty()) {
-    return;
-  }
-  score.runs_before = calibration::predict(before, holdout, options).runs;
-  score.runs_after = calibration::predict(after, holdout, options).runs;
-  for (const calibration::ErrorBeforeAfter& each : calibration::worst_errors(score.runs_before, score.runs_after)) {
-    score.before[each.signal] = {each.before.rmse_K, each.before.max_abs_K};
-    score.after[each.signal] = score.file[each.signal] = {each.after.rmse_K, each.after.max_abs_K};
-  }
+motor::Motor refitted_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
+  motor::Motor result = motor;
+  set_parameters(result, model, diagnosis.selection.own, diagnosis.runs);
+  motor::refresh_values(result);
+  return result;
 }
 
 motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis) {
   motor::Motor result = motor;
-  set_parameters(result, model, diagnosis);
+  set_parameters(result, model, diagnosis.selection.after, diagnosis.runs);
   std::vector<std::string> names;
   for (const estimation::MeasuredRun& run : diagnosis.runs) {
     if (std::ranges::find(names, run.name) == names.end()) {

@@ -33,10 +33,8 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
 /// are not properties of a motor and are left out.
 motor::Motor extended_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
-/// Predicts the hold-out recordings from both motor files with predict(), and replaces `before`, `after` and `file` of `score`. Per signal
-/// the errors are those of the run with the largest error after the diagnosis. Does nothing without recordings.
-void score_files(const motor::Motor& before, const motor::Motor& after, const std::vector<recording::Recording>& holdout,
-                 const calibration::PredictionOptions& options, HoldoutScore& score);
+/// Returns the motor with only its own parameters refitted to the training runs: the part of the gain that is due to no effect.
+motor::Motor refitted_motor(const motor::Motor& motor, const ModelOfLogs& model, const Diagnosis& diagnosis);
 
 /// Returns the fitted parameters whose value in `after` is outside the range (`spread`) that the file `before` declares. The interval of a
 /// measured value is the result of an earlier fit and no declared range.

@@ -246,7 +246,7 @@ SeedRate rate_of_changes_in_one_run(const ChangeInOneRun& change) {
     claim.expect(effect.id == change.id && effect.condition == estimation::Condition{{"run", "run2"}}, account(found));
     claim.expect(std::abs(effect.parameters.front().value - change.size) < change.size_error, "size " + account(found));
     claim.expect(estimation::rms_K(found.after_train) < 0.5 * estimation::rms_K(found.before_train), "error of the fit");
-    const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, found, holdout(runs));
+    const ErrorsOfModels score = errors_of_models(input, found, holdout(runs));
     claim.expect(estimation::rms_K(score.after) < estimation::rms_K(score.before) + 0.02, "error of unseen runs");
   });
 }

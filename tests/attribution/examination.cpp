@@ -217,7 +217,7 @@ Answer examine(const Case& sealed) {
   diagnosis::settle_turning_rows(input);
   answer.diagnosis = diagnosis::diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  answer.score = diagnosis::score_holdout(input, answer.diagnosis, holdout(runs));
+  answer.score = errors_of_models(input, answer.diagnosis, holdout(runs));
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =

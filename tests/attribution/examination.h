@@ -9,6 +9,7 @@
 
 #include "diagnosis/contradicting_run.h"
 #include "diagnosis/diagnosis.h"
+#include "errors_of_models.h"
 #include "estimation/fit.h"
 #include "missing_effects.h"
 #include "motor/motor.h"
@@ -67,7 +68,7 @@ std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::Diagno
 
 struct Answer {
   diagnosis::Diagnosis diagnosis;
-  diagnosis::HoldoutScore score;
+  ErrorsOfModels score;
   std::vector<std::string> named;  ///< ids of catalogue effects, and curves as "node~driver"
   double seconds_s = 0.0;
   double before_K = 0.0;  ///< RMS error on unseen runs against true temperatures, winding and stator together

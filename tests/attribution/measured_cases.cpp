@@ -37,7 +37,7 @@ Diagnosed diagnosed(const motor::Motor& motor, const std::vector<recording::Reco
   Diagnosed out{diagnosis::model_of_logs(motor, train), {}, {}, {}};
   out.input = {out.model.model, runs_of(out.model, train, ambient_C), out.model.usual};
   out.diagnosis = diagnosis::diagnose(out.input, {});
-  out.score = diagnosis::score_holdout(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
+  out.score = errors_of_models(out.input, out.diagnosis, runs_of(out.model, holdout, ambient_C));
   return out;
 }
 

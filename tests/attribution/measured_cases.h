@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnosis/model_file.h"
+#include "errors_of_models.h"
 #include "scoring.h"
 
 namespace heatsoak::attribution::measured {
@@ -24,7 +25,7 @@ struct Diagnosed {
   diagnosis::ModelOfLogs model;
   diagnosis::DiagnosisInput input;
   diagnosis::Diagnosis diagnosis;
-  diagnosis::HoldoutScore score;
+  ErrorsOfModels score;
 };
 Diagnosed diagnosed(const motor::Motor& motor, const std::vector<recording::Recording>& train,
                     const std::vector<recording::Recording>& holdout, std::optional<double> ambient_C = {});

@@ -8,6 +8,7 @@
 
 #include "../support/measured_data.h"
 #include "calibration/calibrate.h"
+#include "diagnosis/coverage.h"
 #include "measured_cases.h"
 #include "support/source_folder.h"
 
@@ -217,7 +218,8 @@ TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load)
   for (const char* const signal : {"winding_C", "stator_C"}) {
     EXPECT_LT(score.after.at(signal).rmse_K, score.before.at(signal).rmse_K) << signal;
   }
-  EXPECT_THAT(score.beyond_training, testing::ElementsAre(testing::Field(&diagnosis::BeyondTraining::signal, thermal::Signal::current)));
+  EXPECT_THAT(diagnosis::beyond_fitted(diagnosis.runs, score.runs),
+              testing::ElementsAre(testing::Field(&diagnosis::BeyondTraining::signal, thermal::Signal::current)));
 }
 
 }  // namespace

@@ -37,8 +37,8 @@ TEST(SoakScenario, TheChassisIsNamedAndHelpsOnAnUnseenMatch) {
     claim.expect(effect.id == "enclosure_warm_up" || effect.id == "third_node", effect.id);
     claim.expect(effect.node == "stator", "node " + effect.node);
     claim.expect(effect.probability > 0.95, fmt::format("probability {}", effect.probability));
-    for (const auto& [signal, error] : answer.score.after) {
-      claim.expect(error.rmse_K < 0.6 * answer.score.before.at(signal).rmse_K, "error of " + signal);
+    for (const diagnosis::HoldoutError& each : answer.score.errors) {
+      claim.expect(each.after.rmse_K < 0.6 * each.before.rmse_K, "error of " + each.signal + " in " + each.run);
     }
   });
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;

@@ -39,13 +39,13 @@ TEST(StatedSensors, AreNotMissing) {
     const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
     claim.expect(found.effects.size() == 1U && found.effects.front().id == "sensor_lag_stator", account(found));
     std::vector<estimation::MeasuredRun> unseen = holdout(runs);
-    const diagnosis::HoldoutScore found_score = diagnosis::score_holdout(input, found, unseen);
+    const ErrorsOfModels found_score = errors_of_models(input, found, unseen);
     for (std::vector<estimation::MeasuredRun>* const some : {&input.train, &unseen}) {
       state(*some, {{motor::find_sensor_effect("sensor_lag_stator"), kLag_s}});
     }
     const diagnosis::Diagnosis stated = diagnosis::diagnose(input, {});
     claim.expect(stated.verdict == diagnosis::DiagnosisVerdict::nothing_missing && stated.effects.empty(), "stated " + account(stated));
-    const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, stated, unseen);
+    const ErrorsOfModels score = errors_of_models(input, stated, unseen);
     for (const auto& [signal, error] : found_score.after) {
       claim.expect(std::abs(score.after.at(signal).rmse_K - error.rmse_K) < 0.05, "error of " + signal);
     }

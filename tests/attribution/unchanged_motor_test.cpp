@@ -107,7 +107,7 @@ TEST(UnchangedMotor, AnOutdatedParameterIsRefittedAndIsNoEffect) {
     known.prior.mean = known.theta();
     const diagnosis::Diagnosis found = diagnosis::diagnose(input, {});
     claim.expect(found.verdict == diagnosis::DiagnosisVerdict::not_identifiable && found.effects.empty(), account(found));
-    const diagnosis::HoldoutScore score = diagnosis::score_holdout(input, found, holdout(asked.runs));
+    const ErrorsOfModels score = errors_of_models(input, found, holdout(asked.runs));
     claim.expect(estimation::rms_K(score.after) < estimation::rms_K(score.before) / 3.0, "error after");
     for (const diagnosis::ChangedParameter& changed : found.changed) {
       claim.expect(changed.name == known.name(coordinate), "changed " + account(found));
@@ -128,8 +128,7 @@ TEST(UnchangedMotor, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
     const Question& asked = of_unchanged_motor(seed);
     diagnosis::DiagnosisInput input = asked.input;
     input.model = known_to(0.01, asked);
-    const double nothing_missing_K =
-        estimation::rms_K(diagnosis::score_holdout(input, diagnosis::diagnose(input, {}), holdout(asked.runs)).after);
+    const double nothing_missing_K = estimation::rms_K(errors_of_models(input, diagnosis::diagnose(input, {}), holdout(asked.runs)).after);
     Case one = asked.sealed;
     one.missing.heat.push_back([](const Moment& now, PerPart& heat_W) {
       const double more_W = 0.14 / 1.6 * (0.5 * (now.copper_C + now.iron_C) - 45.0) / 30.0 * (now.copper_C - now.iron_C);
@@ -146,7 +145,7 @@ TEST(UnchangedMotor, LawIsFoundDespiteANarrowPriorOfACorrelatedParameter) {
     claim.expect(found.changed.size() == 1U && found.changed.front().name == "winding_stator.thermal_resistance" &&
                      found.changed.front().value > 1.02 * found.changed.front().before,
                  "changed " + account(found));
-    claim.expect(estimation::rms_K(diagnosis::score_holdout(input, found, holdout(runs)).after) < 1.1 * nothing_missing_K,
+    claim.expect(estimation::rms_K(errors_of_models(input, found, holdout(runs)).after) < 1.1 * nothing_missing_K,
                  "error after " + account(found));
   });
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;

@@ -151,10 +151,21 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
   }
-  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", errors_json(score.before)}};
-  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", errors_json(score.after)}};
-  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", errors_json(score.refitted)}};
-  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(score.file)}};
+  const auto holdout = [worst = diagnosis::worst_runs(score)](estimation::ErrorOfSignal diagnosis::HoldoutError::*file) {
+    estimation::Errors errors;
+    for (const diagnosis::HoldoutError& each : worst) {
+      errors[each.signal] = each.*file;
+    }
+    return errors_json(errors);
+  };
+  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", holdout(&diagnosis::HoldoutError::before)}};
+  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", holdout(&diagnosis::HoldoutError::after)}};
+  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", holdout(&diagnosis::HoldoutError::refitted)}};
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", holdout(&diagnosis::HoldoutError::after)}};
+  json["holdout_run"] = Json::object();
+  for (const diagnosis::HoldoutError& each : diagnosis::worst_runs(score)) {
+    json["holdout_run"][each.signal] = each.run;
+  }
   json["forecast_band"] = nullptr;
   if (answer.band) {
     json["forecast_band"] = band_json(*answer.motor.fit->band);
@@ -186,7 +197,8 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
     json["runs"]["train"].push_back(
         {{"name", run.name}, {"error", errors_json(estimation::open_loop_errors(diagnosis.selection.after.model, {run}, {}))}});
   }
-  json["runs"]["holdout"] = {{"before", runs_json(score.runs_before)}, {"after", runs_json(score.runs_after)}};
+  json["runs"]["holdout"] = {
+      {"before", runs_json(score.runs_before)}, {"refitted", runs_json(score.runs_refitted)}, {"after", runs_json(score.runs_after)}};
   json["ladder"] = ladder_json(diagnosis.selection);
   json["refused"] = refusal_words(diagnosis.selection);
   json["would_not_show"] = diagnosis.selection.unseen;

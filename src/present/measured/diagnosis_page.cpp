@@ -35,19 +35,19 @@ std::string error_table(const diagnosis::Diagnosis& diagnosis, const diagnosis::
   std::string text = "<table>" + row({"signal", "runs", "before: rms / K", "model refitted: rms / K", "after: rms / K", "before: worst / K",
                                       "after: worst / K"},
                                      "th");
-  const auto add = [&](const estimation::Errors& before, const estimation::Errors& refitted, const estimation::Errors& after,
-                       const char* where) {
-    for (const auto& [signal, error] : before) {
-      const auto found = after.find(signal);
-      if (found != after.end()) {
-        text += row({signal, where, fmt::format("{:.2f}", error.rmse_K), fmt::format("{:.2f}", refitted.at(signal).rmse_K),
-                     fmt::format("{:.2f}", found->second.rmse_K), fmt::format("{:.1f}", error.max_abs_K),
-                     fmt::format("{:.1f}", found->second.max_abs_K)});
-      }
-    }
+  const auto add = [&](const std::string& signal, const std::string& where, const estimation::ErrorOfSignal& before,
+                       const estimation::ErrorOfSignal& refitted, const estimation::ErrorOfSignal& after) {
+    text += row({signal, where, fmt::format("{:.2f}", before.rmse_K), fmt::format("{:.2f}", refitted.rmse_K),
+                 fmt::format("{:.2f}", after.rmse_K), fmt::format("{:.1f}", before.max_abs_K), fmt::format("{:.1f}", after.max_abs_K)});
   };
-  add(diagnosis.before_train, diagnosis.refitted_train, diagnosis.after_train, "training");
-  add(score.before, score.refitted, score.after, "hold-out");
+  for (const auto& [signal, error] : diagnosis.before_train) {
+    if (const auto after = diagnosis.after_train.find(signal); after != diagnosis.after_train.end()) {
+      add(signal, "training", error, diagnosis.refitted_train.at(signal), after->second);
+    }
+  }
+  for (const diagnosis::HoldoutError& each : score.errors) {
+    add(each.signal, "hold-out " + each.run, each.before, each.refitted, each.after);
+  }
   return text + "</table>\n";
 }
 

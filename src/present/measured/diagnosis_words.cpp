@@ -20,21 +20,40 @@
 namespace heatsoak::present {
 namespace {
 
-/// Reports the errors before and after, and with only the model's own parameters refitted, whose part is not due to an effect.
-std::string errors_in_words(const estimation::Errors& before, const estimation::Errors& refitted, const estimation::Errors& after,
-                            std::string_view where) {
+std::string part_of(const std::string& signal) { return signal.substr(0, signal.rfind('_')); }
+
+/// Formats "RMS error of the stator: 0.35 K before, 0.13 K after." `refitted`: error with only the model's own parameters refitted; the
+/// difference to it is due to the effects. Nullptr: not stated.
+std::string error_in_words(std::string_view what, const std::string& signal, double before_K, const double* refitted_K, double after_K) {
+  const std::string own = refitted_K ? fmt::format("{:.2g} K with only the model's own parameters refitted, ", *refitted_K) : "";
+  return fmt::format("{} of the {}: {:.2g} K before, {}{:.2g} K after.", what, part_of(signal), before_K, own, after_K);
+}
+
+std::string errors_in_training_runs(const diagnosis::Diagnosis& diagnosis) {
   std::string text;
-  for (const auto& [signal, error] : before) {
-    const auto found = after.find(signal);
-    if (found != after.end()) {
-      const auto own = refitted.find(signal);
-      text += fmt::format(
-          "{} of the {}: {:.2g} K before, {}{:.2g} K after.",
-          text.empty() ? fmt::format("On {}, RMS error", where) : std::string(" RMS error"), signal.substr(0, signal.rfind('_')),
-          error.rmse_K,
-          own == refitted.end() ? "" : fmt::format("{:.2g} K with only the model's own parameters refitted, ", own->second.rmse_K),
-          found->second.rmse_K);
+  for (const auto& [signal, error] : diagnosis.before_train) {
+    if (const auto after = diagnosis.after_train.find(signal); after != diagnosis.after_train.end()) {
+      const auto own = diagnosis.refitted_train.find(signal);
+      const bool states_own = !diagnosis.effects.empty() && own != diagnosis.refitted_train.end();
+      text += error_in_words(text.empty() ? "In the training runs, RMS error" : " RMS error", signal, error.rmse_K,
+                             states_own ? &own->second.rmse_K : nullptr, after->second.rmse_K);
     }
+  }
+  return text;
+}
+
+std::size_t count_of_runs(const diagnosis::HoldoutScore& score) { return score.runs_after.size(); }
+
+/// Reports each signal in the run in which its error after the diagnosis is largest.
+std::string errors_in_holdout_runs(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
+  std::string text;
+  std::string last_run;
+  for (const diagnosis::HoldoutError& each : diagnosis::worst_runs(score)) {
+    const std::string where =
+        count_of_runs(score) == 1 ? "the hold-out run" : fmt::format("{}, the worst of {} hold-out runs", each.run, count_of_runs(score));
+    text += error_in_words(each.run == last_run ? " RMS error" : fmt::format("{}In {}, RMS error", text.empty() ? "" : " ", where),
+                           each.signal, each.before.rmse_K, diagnosis.effects.empty() ? nullptr : &each.refitted.rmse_K, each.after.rmse_K);
+    last_run = each.run;
   }
   return text;
 }
@@ -73,34 +92,54 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
 }
 
 /// Returns warnings about the use of the model for other runs.
-std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
-  constexpr double kElsewhere_ratio = 3.0;
+/// Warns of the hold-out runs that the new file predicts worse than the original one.
+std::string growth_in_holdout_runs(const diagnosis::HoldoutScore& score) {
   std::string text;
-  const double before_K = estimation::rms_K(score.before);
-  const double after_K = estimation::rms_K(score.after), train_K = estimation::rms_K(diagnosis.after_train);
-  if (diagnosis::is_plainly_worse(after_K, before_K)) {
-    text += " Do not use the new model for other runs: the error on the hold-out runs grows.";
-  }
-  if (diagnosis::is_plainly_worse(train_K, estimation::rms_K(diagnosis.before_train))) {
-    text += " Keep the parameters of the original file: the error on the training runs grows.";
-  }
-  const auto report_growth = [&](const estimation::Errors& before, const estimation::Errors& after, std::string_view where) {
-    for (const auto& [signal, error] : after) {
-      const auto own = before.find(signal);
-      if (own != before.end() && diagnosis::is_plainly_worse(error.rmse_K, own->second.rmse_K) &&
-          !diagnosis::is_plainly_worse(estimation::rms_K(after), estimation::rms_K(before))) {
-        text += fmt::format(" The error of the {} alone grows on {}, from {} to {} K.", signal.substr(0, signal.rfind('_')), where,
-                            base::significant(own->second.rmse_K, 2), base::significant(error.rmse_K, 2));
+  for (const calibration::PredictedRun& run : score.runs_after) {
+    const double before_K = diagnosis::rms_of_run_K(score, run.name, &diagnosis::HoldoutError::before);
+    const double after_K = diagnosis::rms_of_run_K(score, run.name, &diagnosis::HoldoutError::after);
+    if (diagnosis::is_plainly_worse(after_K, before_K)) {
+      text += fmt::format(" Do not use the new model for runs like {}: the error in this hold-out run grows.", run.name);
+      continue;
+    }
+    for (const diagnosis::HoldoutError& each : score.errors) {
+      if (each.run == run.name && diagnosis::is_plainly_worse(each.after.rmse_K, each.before.rmse_K)) {
+        text += fmt::format(" The error of the {} alone grows in {}, from {} to {} K.", part_of(each.signal), run.name,
+                            base::significant(each.before.rmse_K, 2), base::significant(each.after.rmse_K, 2));
       }
     }
-  };
-  report_growth(score.before, score.after, "the hold-out runs");
-  report_growth(diagnosis.before_train, diagnosis.after_train, "the training runs");
-  if (after_K > kElsewhere_ratio * train_K && after_K > train_K + 10.0 * estimation::thresholds().matters_K) {
+  }
+  return text;
+}
+
+std::string growth_in_training_runs(const diagnosis::Diagnosis& diagnosis) {
+  if (diagnosis::is_plainly_worse(estimation::rms_K(diagnosis.after_train), estimation::rms_K(diagnosis.before_train))) {
+    return " Keep the parameters of the original file: the error on the training runs grows.";
+  }
+  std::string text;
+  for (const auto& [signal, error] : diagnosis.after_train) {
+    const auto own = diagnosis.before_train.find(signal);
+    if (own != diagnosis.before_train.end() && diagnosis::is_plainly_worse(error.rmse_K, own->second.rmse_K)) {
+      text += fmt::format(" The error of the {} alone grows in the training runs, from {} to {} K.", part_of(signal),
+                          base::significant(own->second.rmse_K, 2), base::significant(error.rmse_K, 2));
+    }
+  }
+  return text;
+}
+
+std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
+  constexpr double kElsewhere_ratio = 3.0;
+  std::string text = growth_in_holdout_runs(score) + growth_in_training_runs(diagnosis);
+  double worst_K = 0.0;
+  for (const calibration::PredictedRun& run : score.runs_after) {
+    worst_K = std::max(worst_K, diagnosis::rms_of_run_K(score, run.name, &diagnosis::HoldoutError::after));
+  }
+  const double train_K = estimation::rms_K(diagnosis.after_train);
+  if (worst_K > kElsewhere_ratio * train_K && worst_K > train_K + 10.0 * estimation::thresholds().matters_K) {
     text += fmt::format(
-        " The error on the hold-out runs is {:.0f} times that on the training runs: they contain an effect that the training runs do not "
-        "show.",
-        after_K / std::max(estimation::thresholds().matters_K, train_K));
+        " The error in the hold-out runs is up to {:.0f} times that in the training runs: they contain an effect that the training runs do "
+        "not show.",
+        worst_K / std::max(estimation::thresholds().matters_K, train_K));
   }
   return text;
 }
@@ -230,14 +269,16 @@ std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const dia
   for (const estimation::RunDeviation& each : deviations) {
     names.insert(fmt::format("{} in {}", each.type->name, estimation::in_words(each.condition)));
   }
-  const bool is_held_out = !score.file.empty();
-  std::vector<std::string> errors;
-  for (const auto& [signal, error] : is_held_out ? score.file : diagnosis.file_train) {
-    errors.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), base::significant(error.rmse_K, 2)));
+  const std::string whose =
+      fmt::format("{} belongs to those runs, not to the motor, and is only a note in the motor file.", fmt::join(names, " and "));
+  if (!score.errors.empty()) {
+    return whose;  // the errors in the hold-out runs are those of the file
   }
-  return fmt::format(
-      "{} belongs to those runs, not to the motor, and is only a note in the motor file. RMS error of the file alone on {}: {}.",
-      fmt::join(names, " and "), is_held_out ? "the hold-out runs" : "the training runs", fmt::join(errors, ", "));
+  std::vector<std::string> errors;
+  for (const auto& [signal, error] : diagnosis.file_train) {
+    errors.push_back(fmt::format("{} {} K", part_of(signal), base::significant(error.rmse_K, 2)));
+  }
+  return fmt::format("{} RMS error of the file alone in the training runs: {}.", whose, fmt::join(errors, ", "));
 }
 
 /// Reports the band of forecasts with the written file.
@@ -249,7 +290,7 @@ std::string band_in_words(const diagnosis::DiagnosisAnswer& answer) {
   }
   std::vector<std::string> widths;
   for (const auto& [signal, width_K] : answer.band->half_width_K) {
-    widths.push_back(fmt::format("{} K at the {}", base::significant(width_K, 2), signal.substr(0, signal.rfind('_'))));
+    widths.push_back(fmt::format("{} K at the {}", base::significant(width_K, 2), part_of(signal)));
   }
   return fmt::format(
       "The {} band of forecasts with the new file is ±{} on average over the training runs, from predictions of {} left-out recordings.",
@@ -368,14 +409,7 @@ std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answe
   if (diagnosis.selection.is_as_usual) {
     all.emplace_back("The file's values are kept: the model follows these runs as well as those that it was fitted to.");
   }
-  const bool is_held_out = !score.before.empty();
-  const bool is_more = !diagnosis.effects.empty();
-  all.push_back(errors_in_words(is_held_out ? score.before : diagnosis.before_train,
-                                !is_more      ? estimation::Errors{}
-                                : is_held_out ? score.refitted
-                                              : diagnosis.refitted_train,
-                                is_held_out ? score.after : diagnosis.after_train,
-                                is_held_out ? "the hold-out runs" : "the training runs") +
+  all.push_back((score.errors.empty() ? errors_in_training_runs(diagnosis) : errors_in_holdout_runs(diagnosis, score)) +
                 reservations(diagnosis, score));
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
