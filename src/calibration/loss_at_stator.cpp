@@ -8,10 +8,10 @@
 namespace heatsoak::calibration {
 namespace {
 
-enum Node { winding, stator };
-enum Parameter { drag_torque };
-
 struct LossAtStator {
+  enum Node { winding, stator };
+  enum Parameter { drag_torque };
+
   template <class S>
   static void book(const thermal::Situation<S>& x, thermal::HeatBook<S>& heat) {
     const S drag_W = x.parameter(drag_torque) * x.at.speed_mean_rad_per_s;

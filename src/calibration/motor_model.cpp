@@ -10,6 +10,7 @@
 
 #include "base/diagnostic.h"
 #include "base/quantity.h"
+#include "calibration/current_of_torque.h"
 #include "calibration/loss_at_stator.h"
 #include "calibration/unlogged_speed.h"
 #include "estimation/log_rows.h"
@@ -74,6 +75,9 @@ class ModelBuilder {
           motor.parameters.find("no_load_current")->second.origin != base::Origin::estimated) {
         add_loss_at_stator(all_.model.network, motor::drag_torque_Nm(motor.nominal));
       }
+    }
+    if (heat == HeatInput::torque && with_speed && motor.nominal.torque_constant_Nm_per_A > 0.0 && motor.nominal.no_load_current_A > 0.0) {
+      add_current_of_torque(all_.model.network, motor::drag_torque_Nm(motor.nominal), motor.nominal.torque_constant_Nm_per_A);
     }
     all_.model.values = all_.model.network.values();
     if (!is_by_current(heat)) {

@@ -56,7 +56,16 @@ std::string_view Network::node_name(int node) const {
   return node == state_count() ? kAmbient : std::string_view(node_names_.at(static_cast<std::size_t>(node)));
 }
 
-void Network::add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters) {
+int Network::place_of_parameter(std::string_view name) const {
+  const auto found = std::ranges::find(parameters_, name, &NetworkParameter::name);
+  if (found == parameters_.end()) {
+    throw std::logic_error(fmt::format("there is no parameter '{}'", name));
+  }
+  return static_cast<int>(found - parameters_.begin());
+}
+
+void Network::add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters,
+                         const std::map<std::string, std::string>& shared) {
   if (nodes.size() != type.nodes.size() || parameters.size() != type.parameters.size() || nodes.size() > kMostRoles ||
       parameters.size() > kMostParameters) {
     throw std::logic_error(
@@ -65,6 +74,10 @@ void Network::add_effect(std::string name, const EffectType& type, std::span<con
   EffectInPlace effect{.name = std::move(name), .type = &type, .node_index = {}, .parameter_index = {}};
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const base::ParameterSpec& spec = type.parameters[i];
+    if (const auto other = shared.find(std::string(spec.key)); other != shared.end()) {
+      effect.parameter_index.push_back(place_of_parameter(other->second));
+      continue;
+    }
     effect.parameter_index.push_back(
         add_parameter({fmt::format("{}.{}", effect.name, spec.key), base::unit_of(type.parameters, i, parameters), spec.range,
                        parameters[i], spec.choices}));

@@ -1,6 +1,7 @@
 // A thermal network: nodes that store heat, effects that book heat, and one flat list of all their parameters.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,7 +48,10 @@ class Network {
   int add_node(std::string name, double heat_capacity_J_per_K);
   /// Adds an effect. `nodes` and `parameters` are in the order of the type's declaration. All nodes must exist, except a node of the
   /// effect's own: it is added under the name given for its role. Throws std::logic_error on a mismatch or a value out of range.
-  void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters);
+  /// `shared`: declared parameters, by key, that are the parameter of another effect, by its name in the network ("copper_loss.x"); their
+  /// element of `parameters` is not used.
+  void add_effect(std::string name, const EffectType& type, std::span<const std::string> nodes, std::span<const double> parameters,
+                  const std::map<std::string, std::string>& shared = {});
 
   /// Puts a drive stage before the laws: they see its current and its copper loss. It reads the parameters terminal_resistance and
   /// temperature_coefficient and the node of the effect named. Throws std::logic_error if there is no such effect.
@@ -102,6 +106,7 @@ class Network {
   template <class S, class Visit>
   void evaluate(OperatingPoint<S>& at, const S* parameters, const S* temperature_C, const Visit& visit) const;
   int add_parameter(NetworkParameter parameter);
+  [[nodiscard]] int place_of_parameter(std::string_view name) const;
   int add_state(std::string name, int capacity_index);
 
   std::vector<std::string> node_names_;
