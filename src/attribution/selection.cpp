@@ -223,20 +223,45 @@ class Selector : Rounds {
       out_.is_unexplained = true;
       return;
     }
+    // Of several, the one with the weakest evidence goes first, which leaves room for the others.
+    if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return is_zero(fit.model, best, named, m); });
+        last != named.rend()) {
+      refuse({.id = id_of(best.members[*last]), .reason = RefusalReason::no_size});
+      named.erase(std::next(last).base());
+      build(judged, best, std::move(named));
+      return;
+    }
     out_.after = to_predict(std::move(fit));
     add_terms(best, named, kept_members(best, named));
   }
 
-  void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
-    // The network contains the instances in the order in which they were added.
-    const std::size_t first = input_.model.network.effects().size();
+  /// Returns the instances of the kept effects in the model, whose network contains them in the order in which they were added.
+  [[nodiscard]] std::map<int, std::string> instances(const estimation::Model& model, const std::vector<int>& kept) const {
     std::map<int, std::string> names;
-    std::size_t instance = first;
+    std::size_t instance = input_.model.network.effects().size();
     for (const int member : kept) {
       if (!is_parameter(member) && candidates()[static_cast<std::size_t>(member)].type) {
-        names[member] = out_.after.model.network.effects()[instance++].name;
+        names[member] = model.network.effects()[instance++].name;
       }
     }
+    return names;
+  }
+
+  /// Returns whether the fit sets the size of an effect to zero. Its evidence is then an error of the linearisation.
+  [[nodiscard]] bool is_zero(const estimation::Model& model, const EffectSet& best, const std::vector<std::size_t>& named,
+                             std::size_t m) const {
+    const std::map<int, std::string> names = instances(model, kept_members(best, named));
+    const auto own = names.find(best.members[m]);
+    if (own == names.end()) {
+      return false;
+    }
+    const Eigen::Index size = size_coordinate(model, candidates()[static_cast<std::size_t>(own->first)], own->second);
+    constexpr double kThere = 1e-6;  // in typical sizes
+    return model.low(size) == 0.0 && model.theta()[size] < kThere;
+  }
+
+  void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
+    std::map<int, std::string> names = instances(out_.after.model, kept);
     for (const std::size_t m : named) {
       const int member = best.members[m];
       AcceptedTerm term;

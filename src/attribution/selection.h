@@ -68,11 +68,12 @@ struct AcceptedTerm {
 
 /// Reason to reject a candidate that explains something.
 enum class RefusalReason {
-  improbable,                 ///< its probability is too low to name it as the cause
-  one_run_only,               ///< it improves the prediction of one left-out run only
-  curve_is_better,            ///< a curve over a signal explains the runs better
-  unknown_heat_remains,       ///< material unknown heat remains, and the error of whole runs does not fall enough
-  hardly_improves_whole_runs  ///< the prediction of whole runs hardly improves
+  improbable,                  ///< its probability is too low to name it as the cause
+  one_run_only,                ///< it improves the prediction of one left-out run only
+  curve_is_better,             ///< a curve over a signal explains the runs better
+  unknown_heat_remains,        ///< material unknown heat remains, and the error of whole runs does not fall enough
+  hardly_improves_whole_runs,  ///< the prediction of whole runs hardly improves
+  no_size                      ///< the fit of the whole model sets its size to zero
 };
 struct Refusal {
   std::string id;

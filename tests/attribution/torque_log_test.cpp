@@ -66,6 +66,44 @@ double worst_K(const diagnosis::HoldoutScore& score) {
   return worst;
 }
 
+/// Returns a log with input power and shaft torque, of a torque sensor that reads 2 mN m too little.
+recording::Recording by_power(recording::Recording log) {
+  constexpr double kError_Nm = 0.002;
+  const std::vector<double> current_A = log.find("current_A")->values;
+  const std::vector<double> winding_C = log.find("winding_C")->values;
+  const std::vector<double> speed_rad_per_s = log.find("speed_rad_per_s")->values;
+  log = by_torque(std::move(log));
+  std::vector<double> power_W;
+  for (std::size_t k = 0; k < log.rows(); ++k) {
+    const double hot_C = std::isnan(winding_C[k]) ? 60.0 : winding_C[k];
+    power_W.push_back(0.45 * (1.0 + 0.0039 * (hot_C - 25.0)) * current_A[k] * current_A[k] +
+                      kTorque_Nm_per_A * current_A[k] * speed_rad_per_s[k]);
+  }
+  for (recording::Channel& each : log.channels) {
+    if (each.quantity.key == "torque_Nm") {
+      for (std::size_t k = 0; k < log.rows(); ++k) {
+        each.values[k] -= speed_rad_per_s[k] == 0.0 ? 0.0 : std::copysign(kError_Nm, speed_rad_per_s[k]);
+      }
+    }
+  }
+  log.channels.push_back({*recording::quantity_named("power_in_W"), std::move(power_W)});
+  return log;
+}
+
+// Linear evidence alone would name losses that the fit of the whole model sets to 0 W.
+TEST(TorqueLogs, WithAWrongTorqueNameNoLossOfZero) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    Case one;
+    one.seed = seed;
+    one.missing.heat.emplace_back(
+        [](const Moment& now, PerPart& heat) { heat[yoke] += kTorque_Nm_per_A * kNoLoad_A * std::abs(now.in.speed_rad_per_s); });
+    const diagnosis::DiagnosisAnswer answer = answer_of(record(one), by_power);
+    for (const diagnosis::FoundEffect& each : answer.diagnosis.effects) {
+      EXPECT_TRUE(!each.has_heat || each.peak_W > 0.0) << seed << " " << each.id << account(answer.diagnosis);
+    }
+  }
+}
+
 // The motor lacks nothing but the right drag. The written file reads the unseen torques with the drag of the fit.
 TEST(TorqueLogs, OfAMotorWithMoreDragThanItsFileShowNoEffect) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {

@@ -319,6 +319,8 @@ std::string reason_in_words(const attribution::Refusal& refused) {
       return "much unknown heat remains, and the effect does not reduce the error of whole runs enough";
     case attribution::RefusalReason::hardly_improves_whole_runs:
       return "the effect hardly improves the prediction of whole runs";
+    case attribution::RefusalReason::no_size:
+      return "the fit of the whole model sets its size to zero";
   }
   return "";
 }
