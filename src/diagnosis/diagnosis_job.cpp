@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "base/collected_failures.h"
@@ -47,15 +49,12 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   }
 }
 
-/// Adds a finding if one of the runs contradicts the others under the extended model.
-void add_contradiction(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& train,
-                       std::vector<DiagnosisFinding>& findings) {
+/// Returns the recording that contradicts the others under the extended model.
+std::optional<ContradictingRun> contradiction(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& train) {
   constexpr int kMostSteps = 20;
   estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, kMostSteps);
   plain.weights = selection.weights;
-  if (const auto run = contradicting_run(selection.after.model, train, selection.after.start_C, plain)) {
-    findings.emplace_back(*run);
-  }
+  return contradicting_run(selection.after.model, train, selection.after.start_C, plain);
 }
 
 /// Returns the phases of select_effects(). Usually the second round repeats the set of the first, and the search ends. The durations are
@@ -101,21 +100,12 @@ BandSize size_of_band(const motor::Motor& motor, const std::vector<recording::Re
   return size;
 }
 
-}  // namespace
-
-NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
-    : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
-
-DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& progress) {
-  const std::vector<recording::Recording>& fitted = job.logs.fitted;
+/// Diagnoses the motor from the recordings `fitted`. Stops and returns the recording that contradicts the others, if there is one.
+std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, const std::vector<recording::Recording>& fitted,
+                                                    const base::JobProgress& progress, DiagnosisAnswer& answer) {
   const std::vector<recording::Recording>& held_out = job.logs.held_out;
   const recording::LogChoice& choice = job.logs.choice;
-  DiagnosisAnswer answer;
   std::vector<DiagnosisFinding>& findings = answer.findings;
-  if (job.motor.fit && !job.motor.fit->extensions.empty()) {
-    findings.emplace_back(ExtensionsMayImitate{job.motor.fit->extensions});
-  }
-  answer.admission = calibration::admit(job.motor, job.logs);
   ModelOfLogs model = model_of_logs(job.motor, fitted);
   std::ranges::move(model.findings, std::back_inserter(findings));
   estimation::MeasuredRunOptions how = model.how;
@@ -144,7 +134,9 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   estimation::set_columns(input.train, columns);
   progress.expect(last);
   progress.begin(kContradiction);
-  add_contradiction(answer.diagnosis.selection, input.train, findings);
+  if (std::optional<ContradictingRun> found = contradiction(answer.diagnosis.selection, input.train)) {
+    return found;
+  }
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   std::ranges::move(outside_declared_ranges(job.motor, model, answer.motor), std::back_inserter(findings));
@@ -164,6 +156,32 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   answer.score.beyond_training = beyond_fitted(answer.diagnosis.runs, answer.score.runs);
   std::ranges::move(estimation::columns_lacking(columns, held_out), std::back_inserter(findings));
   add_fitted_holdouts(job.motor, held_out, findings);
+  return std::nullopt;
+}
+
+}  // namespace
+
+NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
+    : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
+
+DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& progress) {
+  const calibration::Admission admission = calibration::admit(job.motor, job.logs);
+  std::vector<recording::Recording> fitted = job.logs.fitted;
+  std::vector<DiagnosisFinding> first;
+  if (job.motor.fit && !job.motor.fit->extensions.empty()) {
+    first.emplace_back(ExtensionsMayImitate{job.motor.fit->extensions});
+  }
+  DiagnosisAnswer answer;
+  // Parameters between those of two mountings would hold for neither.
+  while (const std::optional<ContradictingRun> odd = diagnose_recordings(job, fitted, progress, answer)) {
+    first.emplace_back(*odd);
+    if (std::erase_if(fitted, [&](const recording::Recording& each) { return each.name == odd->run; }) == 0) {
+      throw std::logic_error("there is no recording " + odd->run);
+    }
+    answer = {};
+  }
+  answer.admission = admission;
+  answer.findings.insert(answer.findings.begin(), first.begin(), first.end());
   return answer;
 }
 

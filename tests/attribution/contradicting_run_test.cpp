@@ -3,8 +3,14 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <variant>
+
+#include "diagnosis/diagnosis_job.h"
 #include "examination.h"
+#include "motor/write_motor.h"
 #include "scoring.h"
 
 namespace heatsoak::attribution::truth {
@@ -12,22 +18,53 @@ namespace {
 
 constexpr std::size_t kMovedIn = 1;
 
+/// Lets the winding's sensor read between winding and stator.
+void move_sensor(recording::Recording& log) {
+  std::vector<recording::Channel>& channels = log.channels;
+  for (std::size_t row = 0; row < channels[0].values.size(); ++row) {
+    channels[0].values[row] += 0.7 * (channels[1].values[row] - channels[0].values[row]);
+  }
+}
+
 TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one;
     one.seed = seed;
     Runs runs = record(one);
-    // The winding's sensor reads between winding and stator.
-    std::vector<recording::Channel>& channels = runs.training[kMovedIn].log.channels;
-    for (std::size_t row = 0; row < channels[0].values.size(); ++row) {
-      channels[0].values[row] += 0.7 * (channels[1].values[row] - channels[0].values[row]);
-    }
+    move_sensor(runs.training[kMovedIn].log);
     const diagnosis::DiagnosisInput input = question(one, runs);
     const auto run = contradiction(input, diagnosis::diagnose(input, {}).selection);
     claim.expect(run && run->run == "run2" && run->signal == "winding_C" && run->by_others_K > 3.0 * run->alone_K,
                  run ? fmt::format("{} {} {} {}", run->run, run->signal, run->by_others_K, run->alone_K) : "nothing is reported");
   });
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
+}
+
+// The written file is that of the other runs alone.
+TEST(ContradictingRun, IsLeftOutOfTheFit) {
+  Case one;
+  one.seed = 3;
+  Runs runs = record(one);
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("contradicting_{}.toml", getpid());
+  const motor::Motor motor = sheet_of(runs.make, file);
+  std::filesystem::remove(file);
+  const auto answer_to = [&](bool has_moved) {
+    recording::NamedLogs logs;
+    for (std::size_t r = 0; r < runs.training.size(); ++r) {
+      if (has_moved || r != kMovedIn) {
+        logs.fitted.push_back(runs.training[r].log);
+      }
+    }
+    return diagnosis::run_diagnosis({motor, logs});
+  };
+  const std::string others = motor::to_toml(answer_to(false).motor);
+  move_sensor(runs.training[kMovedIn].log);
+  const diagnosis::DiagnosisAnswer answer = answer_to(true);
+  EXPECT_EQ(motor::to_toml(answer.motor), others);
+  ASSERT_FALSE(answer.findings.empty());
+  const auto* const odd = std::get_if<diagnosis::ContradictingRun>(&answer.findings.front());
+  ASSERT_NE(odd, nullptr);
+  EXPECT_EQ(odd->run, "run2");
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ std::string say(const diagnosis::ExtensionsMayImitate& of) {
 
 std::string say(const diagnosis::ContradictingRun& run) {
   return fmt::format(
-      "{0} contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by {3} K, although {0} alone "
-      "can "
-      "be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}; if so, leave it out",
+      "{0} is left out, because it contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by "
+      "{3} "
+      "K, although {0} alone can be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}",
       run.run, base::significant(run.usual_K, 2), run.signal.substr(0, run.signal.rfind('_')), base::significant(run.by_others_K, 2),
       base::significant(run.alone_K, 2));
 }
