@@ -64,6 +64,10 @@ struct HeatInputLacking {
   motor::HeatInput used = motor::HeatInput::current;
   std::vector<std::string> recordings;  ///< those without it, at least one
 };
+/// The heat comes from the input power of recordings without torque and speed, so that power of the shaft counts as heat.
+struct ShaftPowerUnknown {
+  std::vector<std::string> recordings;  ///< at least one
+};
 /// Assumption of a forecast.
 using PredictionNote = std::variant<BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, estimation::RunNote>;
 

@@ -73,6 +73,9 @@ class Calibrating {
     if (std::optional<HeatInputLacking> lacking = lacking_heat_input(motor, recordings_, {}, setup_.heat)) {
       all_.findings.emplace_back(*std::move(lacking));
     }
+    if (std::optional<ShaftPowerUnknown> unknown = shaft_power_unknown(recordings_, setup_.heat)) {
+      all_.findings.emplace_back(*std::move(unknown));
+    }
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.findings));
     std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.findings));
     estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);

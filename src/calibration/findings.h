@@ -98,7 +98,7 @@ using CalibrationFinding =
     std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
                  HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, UnidentifiableAreWritten, TooFewPieces,
                  CrossValidation, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue,
-                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, SignalsMissing, estimation::RunNote>;
+                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
 
 /// Returns whether a finding of this type exists.
 template <class Finding>

@@ -389,6 +389,18 @@ HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Re
   return HeatInput::current;
 }
 
+std::optional<ShaftPowerUnknown> shaft_power_unknown(std::span<const recording::Recording> recordings, HeatInput used) {
+  ShaftPowerUnknown finding;
+  for (const recording::Recording& each : recordings) {
+    const bool is_known =
+        estimation::has_signal(each, thermal::Signal::shaft_power) && estimation::has_signal(each, thermal::Signal::speed);
+    if (used == HeatInput::input_power && !is_known) {
+      finding.recordings.push_back(each.name);
+    }
+  }
+  return finding.recordings.empty() ? std::nullopt : std::optional(std::move(finding));
+}
+
 std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, std::span<const recording::Recording> recordings,
                                                    const HeatRules& rules, HeatInput used) {
   const std::optional<HeatInput> wanted = wanted_heat_input(motor, rules);

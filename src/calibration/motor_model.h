@@ -87,6 +87,9 @@ HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Re
 std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, std::span<const recording::Recording> recordings,
                                                    const HeatRules& rules, HeatInput used);
 
+/// Returns a finding if `used` is the input power, with the recordings that have no shaft power.
+std::optional<ShaftPowerUnknown> shaft_power_unknown(std::span<const recording::Recording> recordings, HeatInput used);
+
 /// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable. A remaining_loss acts only in the power
 /// balance: the other heat inputs contain that loss.
 MotorModel motor_model(const motor::Motor& motor, HeatInput heat, bool with_speed);

@@ -47,7 +47,7 @@ struct ColumnsNotSearched {
 using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, calibration::SignalsMissing, ConditionNotApplied,
                                       ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
                                       ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue,
-                                      calibration::HeatInputLacking, estimation::RunNote>;
+                                      calibration::HeatInputLacking, calibration::ShaftPowerUnknown, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NothingHeatsModel : public base::Failure {

@@ -228,6 +228,9 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   if (std::optional<calibration::HeatInputLacking> lacking = calibration::lacking_heat_input(motor, recordings, {}, out.heat)) {
     out.findings.emplace_back(*std::move(lacking));
   }
+  if (std::optional<calibration::ShaftPowerUnknown> unknown = calibration::shaft_power_unknown(recordings, out.heat)) {
+    out.findings.emplace_back(*std::move(unknown));
+  }
   calibration::MotorModel built = calibration::motor_model(everywhere, out.heat, have(thermal::Signal::speed));
   out.how = calibration::how_to_read(motor, built.heat);
   if (calibration::is_by_current(built.heat) && !have(thermal::Signal::speed) && calibration::most_loss_at_speed_W(motor) > 0.0) {

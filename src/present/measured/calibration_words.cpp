@@ -250,6 +250,13 @@ std::string_view columns_of(motor::HeatInput heat) {
   return "the power balance (current_A, power_in_W, torque_Nm and speed_rad_per_s)";
 }
 
+std::string say(const calibration::ShaftPowerUnknown& of) {
+  return fmt::format(
+      "{} {} no torque or no speed, so all of the input power counts as heat: valid only while the shaft gives no power. Log torque_Nm and "
+      "speed_rad_per_s, or current_A",
+      fmt::join(of.recordings, ", "), of.recordings.size() == 1 ? "has" : "have");
+}
+
 std::string say(const calibration::HeatInputLacking& of) {
   return fmt::format(
       "temperatures may be wrong by several kelvin: the model was fitted with heat from {}, which {} {} not have, so that the heat comes "
@@ -428,7 +435,8 @@ Severity severity_of(const calibration::CalibrationFinding& finding) {
   if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
     return severity_of(*note);
   }
-  using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, HeatInputLacking>;
+  using Warnings =
+      Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, HeatInputLacking, ShaftPowerUnknown>;
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
                       ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;

@@ -88,7 +88,8 @@ Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
     return severity_of(*note);
   }
-  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange, calibration::HeatInputLacking>;
+  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange, calibration::HeatInputLacking,
+                         calibration::ShaftPowerUnknown>;
   using Notes =
       Kinds<calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
             TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
