@@ -73,11 +73,6 @@ struct TooFewPieces {
   std::size_t runs = 0;        ///< number of fitted runs
   bool are_whole_runs = true;  ///< false: the pieces are parts of runs
 };
-/// Errors of the candidate models on left-out pieces.
-struct CrossValidation {
-  std::size_t pieces = 0;
-  std::vector<RivalScore> rivals;
-};
 /// The parameters of the tempered forecast fit are written.
 struct ForecastFitIsWritten {};
 /// No fit predicts left-out pieces better than the file.
@@ -97,8 +92,8 @@ struct ExtendedForForecasts {
 using CalibrationFinding =
     std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
                  HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, UnidentifiableAreWritten, TooFewPieces,
-                 CrossValidation, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue,
-                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
+                 ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed,
+                 BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
 
 /// Returns whether a finding of this type exists.
 template <class Finding>

@@ -162,9 +162,6 @@ std::vector<CalibrationFinding> forecast_findings(const Calibration& calibration
     const bool are_runs = std::ranges::all_of(forecast.pieces, [](const Piece& piece) { return piece.seen.empty(); });
     found.push_back(TooFewPieces{forecast.pieces.size(), kLeastPieces, calibration.runs.size(), are_runs});
   }
-  if (!forecast.rivals.empty()) {
-    found.push_back(CrossValidation{forecast.pieces.size(), forecast.rivals});
-  }
   if (is_written && forecast.source == ForecastSource::tempered) {
     found.push_back(ForecastFitIsWritten{});
   }

@@ -85,6 +85,9 @@ TEST(HeatInputOfDiagnosis, IsThatOfItsForecasts) {
   const DiagnosisAnswer of_both = answer_for(motor, fitted, {log_with_both(4)});
   const DiagnosisAnswer of_power = answer_for(motor, fitted, {without(log_with_both(4), "current_A")});
   EXPECT_EQ(of_both.motor.fit->heat_input, HeatInput::input_power);
+  EXPECT_TRUE(std::ranges::any_of(of_both.findings, [](const DiagnosisFinding& each) {
+    return std::holds_alternative<calibration::ShaftPowerUnknown>(each);
+  })) << "the logs have no torque";
   EXPECT_LT(worst_rms_K(of_both.score.runs_after), 1.0);
   EXPECT_EQ(worst_rms_K(of_both.score.runs_after), worst_rms_K(of_power.score.runs_after));
   EXPECT_EQ(worst_rms_K(of_both.score.runs_before), worst_rms_K(of_power.score.runs_before));

@@ -99,6 +99,43 @@ std::string heat_words(const calibration::Calibration& result) {
   return words;
 }
 
+std::string_view name_of(calibration::ForecastSource source) {
+  switch (source) {
+    case calibration::ForecastSource::file:
+      return "file";
+    case calibration::ForecastSource::ordinary:
+      return "least squares of free runs";
+    case calibration::ForecastSource::tempered:
+      return "forecast fit";
+    case calibration::ForecastSource::innovations:
+      break;
+  }
+  return "innovations fit";
+}
+
+/// Errors of all alternatives in the left-out pieces. Ordinary least squares is the simple alternative to the others.
+Table left_out_errors(const calibration::Forecast& forecast, bool is_forecast_written) {
+  using calibration::ForecastSource;
+  Table table{
+      .title = fmt::format("RMS error in {} pieces of the runs, each predicted by a fit to the others, in K", forecast.pieces.size()),
+      .columns = {{"fit", "", 0, Alignment::left}},
+      .rows = {}};
+  for (const auto& [signal, error_K] : forecast.rivals.front().rmse_K) {
+    table.columns.push_back({signal, "", 0});
+  }
+  table.columns.push_back({"written", "", 0, Alignment::left});
+  for (const calibration::RivalScore& rival : forecast.rivals) {
+    std::vector<Text> cells{{std::string(name_of(rival.source))}};
+    for (const auto& [signal, error_K] : rival.rmse_K) {
+      cells.push_back({base::significant(error_K, 2)});
+    }
+    const bool is_written = rival.source == (is_forecast_written ? forecast.source : ForecastSource::innovations);
+    cells.push_back({is_written ? "yes" : ""});
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer, std::span<const recording::LogReading> readings) {
@@ -144,6 +181,9 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
   add_errors(errors, "fit", result.fit_error);
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
+  if (result.forecast && !result.forecast->rivals.empty()) {
+    document.tables.push_back(left_out_errors(*result.forecast, result.is_forecast_written));
+  }
   for (const Note& each : calibration_notes(answer, readings)) {
     document.add_note(each.severity, each.words);
   }

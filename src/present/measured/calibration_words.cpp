@@ -17,28 +17,6 @@
 namespace heatsoak::present {
 namespace {
 
-std::string_view name_of(calibration::ForecastSource source) {
-  switch (source) {
-    case calibration::ForecastSource::file:
-      return "file";
-    case calibration::ForecastSource::ordinary:
-      return "least squares of free runs";
-    case calibration::ForecastSource::tempered:
-      return "forecast fit";
-    case calibration::ForecastSource::innovations:
-      break;
-  }
-  return "innovations fit";
-}
-
-std::string errors_in_words(const calibration::RivalScore& rival) {
-  std::vector<std::string> each;
-  for (const auto& [signal, rmse_K] : rival.rmse_K) {
-    each.push_back(fmt::format("{} {} K", signal.substr(0, signal.rfind('_')), base::significant(rmse_K, 2)));
-  }
-  return fmt::format("{}: {}", name_of(rival.source), fmt::join(each, ", "));
-}
-
 std::string say(const calibration::LossAtSpeedUnknown& of) {
   return fmt::format(
       "the loss at speed is treated as unknown, 0 to {} W (the loss at no-load speed), in logs that have a current but no speed; if the "
@@ -130,12 +108,6 @@ std::string say(const calibration::TooFewPieces& of) {
       "contain{} "
       "heat, and needs at least {}",
       base::level_text(base::kBand_share), of.pieces, parts, of.pieces == 1 ? "s" : "", of.needed);
-}
-
-std::string say(const calibration::CrossValidation& of) {
-  std::vector<std::string> each;
-  std::ranges::transform(of.rivals, std::back_inserter(each), errors_in_words);
-  return fmt::format("cross-validation error of the left-out pieces ({}), rms: {}", of.pieces, fmt::join(each, "; "));
 }
 
 std::string say(const calibration::ForecastFitIsWritten& /*of*/) {
@@ -440,8 +412,7 @@ Severity severity_of(const calibration::CalibrationFinding& finding) {
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
                       ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;
-  using Background = Kinds<CrossValidation>;
-  return severity_in<Warnings, Notes, Background>(finding);
+  return severity_in<Warnings, Notes, Kinds<>>(finding);
 }
 
 namespace {
