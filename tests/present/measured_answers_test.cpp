@@ -61,5 +61,17 @@ TEST(LogInspect, OneDocumentForAllLogs) {
   }
 }
 
+TEST(LogInspect, SizeHasAUnitThatFits) {
+  const std::vector<recording::InspectedLog> logs = recording::inspect_logs(kShippedFolders, {"reports/soak/bench.csv"}, "");
+  const auto rows_with = [&](std::size_t bytes) {
+    std::vector<recording::InspectedLog> changed = logs;
+    changed.front().report.file_bytes = bytes;
+    return logs_document(changed).tables.front().rows.front().back().words;
+  };
+  EXPECT_THAT(rows_with(640), testing::EndsWith(", 640 B"));
+  EXPECT_THAT(rows_with(78'400), testing::EndsWith(", 78.4 kB"));
+  EXPECT_THAT(rows_with(59'000'000), testing::EndsWith(", 59.0 MB"));
+}
+
 }  // namespace
 }  // namespace heatsoak::present

@@ -64,12 +64,20 @@ std::string clock_text(const recording::ClockOffset& offset) {
                      base::significant(offset.delay_uncertainty_s, 2));
 }
 
+/// Returns the size in the largest unit of which it has at least one.
+std::string size_text(std::size_t bytes) {
+  constexpr double kStep = 1e3;
+  const auto size = static_cast<double>(bytes);
+  return size < kStep           ? fmt::format("{:.0f} B", size)
+         : size < kStep * kStep ? fmt::format("{:.1f} kB", size / kStep)
+                                : fmt::format("{:.1f} MB", size / (kStep * kStep));
+}
+
 Table summary_table(const std::string& title, const recording::Recording& recording, const recording::RecordingReport& report,
                     const recording::DataQuality& quality) {
   Table table = labelled_table(title);
   add_labelled(table, "rows",
-               fmt::format("{} of {} kept, {:.1f} MB", plural(report.rows_kept, "row"), report.rows_in_file,
-                           static_cast<double>(report.file_bytes) / 1e6));
+               fmt::format("{} of {} kept, {}", plural(report.rows_kept, "row"), report.rows_in_file, size_text(report.file_bytes)));
   add_labelled(table, "motor", recording.motor);
   for (const auto& [key, condition] : recording.conditions) {
     add_labelled(table, key, condition);
