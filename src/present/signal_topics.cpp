@@ -108,7 +108,7 @@ bool is_effect(const SignalRow& row) {
 Document signal_description(const SignalRow& row) {
   Document document{.headline = {{fmt::format("{}: {}", row.name, row.meaning)}}};
   Table table = labelled_table("");
-  add_labelled(table, "unit", row.unit.empty() ? "none" : row.unit);
+  add_labelled(table, "unit", row.unit.empty() ? "a number without unit" : row.unit);
   add_labelled(table, "log column", column_words(row));
   add_labelled(table, "averaging", averaging_words(row.averaging));
   add_labelled(table, "default", default_words(row));

@@ -96,6 +96,14 @@ TEST(Topics, EverySignalIsInTheirTable) {
   }
 }
 
+TEST(Topics, ASignalWithoutUnitSaysSo) {
+  const auto unit_of = [](const char* signal) {
+    return description_of(signal, kShippedFolders).tables.front().rows.front().back().words;
+  };
+  EXPECT_EQ(unit_of("modulation"), "a number without unit");
+  EXPECT_EQ(unit_of("bus_voltage"), "V");
+}
+
 TEST(Topics, ALogColumnIsDescribedAsItsSignal) {
   EXPECT_EQ(description_of("torque_Nm", kShippedFolders).data.at("id"), "shaft_power");
   EXPECT_EQ(description_of("duty_ratio", kShippedFolders).data.at("id"), "modulation") << "the earlier name";
