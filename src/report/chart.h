@@ -2,21 +2,20 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace heatsoak::report {
 
-/// The `color_index` of levels, for a limit that is no horizontal line.
-inline constexpr int kLevelColor_index = -1;
-
 /// A curve. `x` and `y` have the same length and the units of the axes. NaN interrupts the line if the gap is at least one pixel wide.
 struct ChartCurve {
   std::string name = {};  ///< shown in the legend; empty: not listed
   std::vector<double> x = {};
   std::vector<double> y = {};
-  int color_index = 0;  ///< index in the palette of eight, the same colour in every panel; or kLevelColor_index
+  /// Index in the palette of eight, the same colour in every panel. Empty: the colour of levels, for a limit that is no horizontal line.
+  std::optional<int> color_index = 0;
   bool dashed = false;
   bool dots = false;        ///< draw a square at every sample instead of a line
   bool has_ripple = false;  ///< draw parts that oscillate within a few pixels as lines along maxima and minima; false: one line

@@ -124,7 +124,7 @@ TEST(MatchChart, has_the_winding_above_the_stator_with_one_colour_per_wheel) {
   EXPECT_EQ(panels[0].title, "Winding");
   EXPECT_EQ(panels[1].title, "Stator");
   ASSERT_EQ(panels[1].curves.size(), panels[0].curves.size());
-  std::set<int> colors;
+  std::set<std::optional<int>> colors;
   for (std::size_t i = 0; i < panels[0].curves.size(); ++i) {
     EXPECT_NE(panels[0].curves[i].name, "");
     EXPECT_EQ(panels[1].curves[i].color_index, panels[0].curves[i].color_index);

@@ -106,7 +106,7 @@ TEST_F(ChartTest, LimitThatIsNoHorizontalLineHasTheColourOfLevels) {
                     .panels = {{.title = "p",
                                 .y_label = "y",
                                 .curves = {{.x = {0.0, 10.0}, .y = {0.0, 10.0}},
-                                           {.x = {4.0, 4.0}, .y = {0.0, 10.0}, .color_index = kLevelColor_index}}}}};
+                                           {.x = {4.0, 4.0}, .y = {0.0, 10.0}, .color_index = std::nullopt}}}}};
   const auto elements = drawn(chart);
   const auto limits = lines(elements, red, 2);
   ASSERT_EQ(limits.size(), 1U);

@@ -55,8 +55,8 @@ constexpr std::array<Color, 8> kPalette{{{0x00, 0x72, 0xB2},
                                          {0xF0, 0xE4, 0x42}}};
 constexpr unsigned char kBandOpacity = 51;  // 20 %
 
-Color palette_color(int index) {
-  return index == kLevelColor_index ? std::to_array(kLimitColor) : kPalette[static_cast<unsigned>(index) % kPalette.size()];
+Color palette_color(std::optional<int> index) {
+  return index ? kPalette[static_cast<unsigned>(*index) % kPalette.size()] : std::to_array(kLimitColor);
 }
 
 void set_pen(vtkPen* pen, const Color& color, double width_px, bool is_dashed) {

@@ -1,6 +1,7 @@
 // Layout of a chart: the positions of all elements before anything is drawn.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct PlacedText {
 struct LegendSwatch {
   double x_px = 0.0;
   double y_px = 0.0;
-  int color_index = 0;
+  std::optional<int> color_index = 0;  ///< as in ChartCurve
   bool is_dashed = false;
   bool is_band = false;
   bool is_dots = false;

@@ -354,7 +354,7 @@ report::Chart chart_of(std::span<const Tally> tallies, double limit_C) {
   chart.panels[0].curves.push_back({.name = fmt::format("limit of {:.0f} °C", limit_C),
                                     .x = {limit_C, limit_C},
                                     .y = {1e-4, 100.0},
-                                    .color_index = report::kLevelColor_index,
+                                    .color_index = std::nullopt,
                                     .dashed = true});
   return chart;
 }
