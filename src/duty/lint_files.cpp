@@ -18,6 +18,9 @@ namespace {
 
 /// Reads the file as the kind that its keys indicate and returns its findings.
 std::vector<motor::LintFinding> look_into(const std::filesystem::path& file, const input::DataFolders& folders) {
+  if (file.extension() == ".csv") {
+    throw base::bad_input({file.string()}, "", "is a table; expected a TOML file. `heatsoak log inspect FILE` checks a measured log");
+  }
   switch (file_kind(file)) {
     case FileKind::duty:
       read_duty(file);
@@ -87,6 +90,7 @@ FilesLint lint_files(std::span<const std::string> names, const input::DataFolder
   FilesLint result;
   std::vector<base::Diagnostic> unreadable;
   std::string unknown;
+  bool is_any_readable = false;
   for (const std::string& name : names) {
     try {
       const std::vector<std::string> named = files_named(name, folders);
@@ -101,12 +105,16 @@ FilesLint lint_files(std::span<const std::string> names, const input::DataFolder
       std::vector<motor::LintFinding> found = look_into(file, folders);
       std::ranges::stable_sort(found, {}, [](const motor::LintFinding& each) { return std::tuple(each.at.line, each.at.column); });
       result.findings.insert(result.findings.end(), found.begin(), found.end());
+      is_any_readable = true;
     } catch (const base::Failure& failure) {
       unreadable.insert(unreadable.end(), failure.diagnostics().begin(), failure.diagnostics().end());
     }
   }
   if (!unreadable.empty() || !unknown.empty()) {
-    throw base::Failure(base::ExitCode::bad_input, std::move(unknown), std::move(unreadable));
+    result.unreadable.emplace(base::ExitCode::bad_input, std::move(unknown), std::move(unreadable));
+    if (!is_any_readable) {
+      throw base::Failure(*result.unreadable);
+    }
   }
   std::ranges::stable_sort(result.findings, {}, &motor::LintFinding::level);
   return result;

@@ -12,14 +12,18 @@ Document lint_document(const duty::FilesLint& lint) {
   const std::size_t files = lint.files.size();
   const std::size_t errors = lint.count(motor::LintFinding::Level::error);
   const std::size_t warnings = lint.count(motor::LintFinding::Level::warning);
-  const bool is_sound = errors + warnings == 0;
-  Document document{.headline = {{fmt::format("{} file{}: {}", files, files == 1 ? "" : "s",
-                                              is_sound ? "sound"
-                                                       : fmt::format("{} error{}, {} warning{}", errors, errors == 1 ? "" : "s", warnings,
-                                                                     warnings == 1 ? "" : "s")),
-                                  is_sound ? Tone::good : Tone::bad}},
-                    .paragraphs = {}};
+  const bool is_sound = errors + warnings == 0 && !lint.unreadable;
+  Document document{
+      .headline = {{fmt::format("{} file{}: {}", files, files == 1 ? "" : "s",
+                                is_sound ? "sound"
+                                         : fmt::format("{}{} error{}, {} warning{}", lint.unreadable ? "some cannot be read, " : "", errors,
+                                                       errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s")),
+                    is_sound ? Tone::good : Tone::bad}},
+      .paragraphs = {}};
   Listing listing{.title = {}, .lines = {}, .is_prose = true, .precedes_notes = true};
+  if (lint.unreadable) {
+    listing.lines += fmt::format("{}\n", lint.unreadable->what());
+  }
   std::vector<std::string> on_estimates;
   for (const motor::LintFinding& each : lint.findings) {
     if (each.level != motor::LintFinding::Level::note) {

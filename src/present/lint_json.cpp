@@ -15,11 +15,15 @@ Json lint_json(const duty::FilesLint& lint) {
                         {"key", each.key},
                         {"message", motor::message_of(each)}});
   }
-  return {{"schema", "heatsoak.lint/1"},
-          {"files", lint.files},
-          {"errors", lint.count(motor::LintFinding::Level::error)},
-          {"warnings", lint.count(motor::LintFinding::Level::warning)},
-          {"findings", findings}};
+  Json data{{"schema", "heatsoak.lint/1"},
+            {"files", lint.files},
+            {"errors", lint.count(motor::LintFinding::Level::error)},
+            {"warnings", lint.count(motor::LintFinding::Level::warning)},
+            {"findings", findings}};
+  if (lint.unreadable) {
+    data["error"] = failure_json(*lint.unreadable).at("error");
+  }
+  return data;
 }
 
 }  // namespace heatsoak::present

@@ -99,8 +99,7 @@ TEST_F(LintFiles, AllProblemsAreReportedAtOnce) {
   const std::string broken = put("broken.toml", "id = \n");
   fs::create_directory(folder_ / "empty");
   try {
-    lint_files(std::vector<std::string>{"maxon_ecx_flat_32l_48", broken, (folder_ / "empty").string(), "division_a_match"},
-               kShippedFolders);
+    lint_files(std::vector<std::string>{"maxon_ecx_flat_32l_48", broken, (folder_ / "empty").string()}, kShippedFolders);
     FAIL();
   } catch (const base::Failure& failure) {
     EXPECT_EQ(failure.code(), base::ExitCode::bad_input);
@@ -110,6 +109,31 @@ TEST_F(LintFiles, AllProblemsAreReportedAtOnce) {
     EXPECT_EQ(failure.diagnostics().front().at.file, broken);
     EXPECT_EQ(failure.diagnostics().front().at.line, 1);
   }
+}
+
+TEST_F(LintFiles, LogsArePassedToTheVerbThatChecksThem) {
+  const std::string log = put("sim.csv", "time_s,current_A\n0,1\n1,2\n");
+  try {
+    lint_files(std::vector{log}, kShippedFolders);
+    FAIL();
+  } catch (const base::Failure& failure) {
+    ASSERT_EQ(failure.diagnostics().size(), 1U) << failure.what();
+    EXPECT_THAT(failure.diagnostics().front().message, HasSubstr("`heatsoak log inspect FILE`"));
+  }
+}
+
+// A broken file beside a readable one: the findings of the other are kept.
+TEST_F(LintFiles, UnreadableFilesDoNotHideFindings) {
+  const std::string broken = put("broken.toml", "id = \n");
+  const std::string sound = "maxon_dcx19s_24v";
+  const FilesLint alone = lint_files(std::vector{sound}, kShippedFolders);
+  const FilesLint both = lint_files(std::vector{broken, sound}, kShippedFolders);
+  ASSERT_FALSE(alone.findings.empty());
+  EXPECT_FALSE(alone.unreadable);
+  EXPECT_EQ(words(both.findings), words(alone.findings));
+  ASSERT_TRUE(both.unreadable);
+  EXPECT_EQ(both.unreadable->code(), base::ExitCode::bad_input);
+  EXPECT_EQ(both.unreadable->diagnostics().front().at.file, broken);
 }
 
 }  // namespace

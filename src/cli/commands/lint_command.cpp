@@ -13,6 +13,9 @@ namespace {
 base::ExitCode run(const std::vector<std::string>& names, Session& session) {
   const duty::FilesLint lint = duty::lint_files(names, session.folders());
   session.show(present::lint_document(lint));
+  if (lint.unreadable) {
+    return lint.unreadable->code();
+  }
   return lint.count(motor::LintFinding::Level::error) + lint.count(motor::LintFinding::Level::warning) == 0
              ? base::ExitCode::done
              : base::ExitCode::limit_exceeded;
