@@ -99,6 +99,7 @@ void Session::show(present::Document document) {
   text_ += present::terminal_text(document, {.width = terminal_width(descriptor),
                                              .with_colors = takes_colors(descriptor),
                                              .is_terminal = isatty(descriptor) == 1,
+                                             .breaks_rows = known_width(descriptor).has_value(),
                                              .explains = explains_,
                                              .is_quiet = is_quiet_});
 }

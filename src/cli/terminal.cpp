@@ -31,8 +31,7 @@ std::string_view environment(const char* name) {
 
 }  // namespace
 
-std::size_t terminal_width(int descriptor) {
-  constexpr std::size_t kUsual = 80;
+std::optional<std::size_t> known_width(int descriptor) {
   static constexpr std::size_t kMost = 1000;
   const auto within = [](std::size_t width) { return std::clamp(width, present::kLeastWidth, kMost); };
   const std::string_view columns = environment("COLUMNS");
@@ -42,7 +41,12 @@ std::size_t terminal_width(int descriptor) {
     return within(wanted);
   }
   winsize size{};
-  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? within(size.ws_col) : kUsual;
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? std::optional(within(size.ws_col)) : std::nullopt;
+}
+
+std::size_t terminal_width(int descriptor) {
+  constexpr std::size_t kUsual = 80;
+  return known_width(descriptor).value_or(kUsual);
 }
 
 std::string printable(std::string_view text) {

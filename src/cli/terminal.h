@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,7 +12,9 @@
 
 namespace heatsoak::cli {
 
-/// Returns the width in characters, 20 to 1000: COLUMNS if it is a positive integer, else the terminal's own width, else 80.
+/// Returns the width in characters, 20 to 1000: COLUMNS if it is a positive integer, else the terminal's own width. A file or pipe has none.
+std::optional<std::size_t> known_width(int descriptor);
+/// Returns the width, or 80 without one.
 std::size_t terminal_width(int descriptor);
 
 /// Returns true for a terminal unless NO_COLOR or TERM=dumb is set.

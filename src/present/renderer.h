@@ -18,6 +18,7 @@ struct RenderOptions {
   std::size_t width = 80;  ///< characters; at least kLeastWidth
   bool with_colors = false;
   bool is_terminal = false;  ///< false for files and pipes
+  bool breaks_rows = true;   ///< false: each row of a table is one line, because a pipe has no width
   bool explains = false;     ///< show every note
   bool is_quiet = false;     ///< show only the headline; without one, the first column of the tables, for scripts
 };

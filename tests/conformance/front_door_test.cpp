@@ -332,6 +332,14 @@ TEST_F(FrontDoor, every_answer_fits_a_narrow_terminal) {
   }
 }
 
+TEST_F(FrontDoor, a_list_in_a_pipe_has_one_line_per_name) {
+  for (const std::string kind : {"duties", "effects", "motors"}) {
+    const std::string names = run_here("heatsoak list " + kind + " --quiet").out;
+    const std::string list = run_here("heatsoak list " + kind).out;
+    EXPECT_EQ(std::ranges::count(list, '\n'), std::ranges::count(names, '\n')) << list;
+  }
+}
+
 TEST_F(FrontDoor, a_width_below_the_least_is_the_least) {
   for (const std::string& command : kShortAnswers) {
     const ProgramRun least = run_here("COLUMNS=20 " + command);

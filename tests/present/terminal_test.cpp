@@ -101,6 +101,17 @@ TEST(Terminal, prose_stands_beside_its_row_or_below_it) {
   }
 }
 
+// A pipe has no width: scripts that search lines find each row with its explanation.
+TEST(Terminal, a_row_is_one_line_in_a_pipe) {
+  const Document document = with_prose();
+  const auto rows_in = [&](bool breaks_rows) {
+    return lines_of(terminal_text(document, {.width = 40, .breaks_rows = breaks_rows})).size();
+  };
+  const std::size_t head_and_rows = 1 + document.tables.front().rows.size();
+  EXPECT_EQ(rows_in(false), head_and_rows);
+  EXPECT_GT(rows_in(true), head_and_rows);
+}
+
 TEST(Terminal, a_quiet_list_shows_its_names) {
   EXPECT_EQ(terminal_text(with_prose(), {.width = 60, .is_quiet = true}), "first_name_of_all\nsecond\n");
 }

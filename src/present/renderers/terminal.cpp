@@ -173,6 +173,8 @@ std::string text_of(Table table, const RenderOptions& options) {
     shown.pop_back();
   }
   fit(widths, shown, table, options.width);
+  constexpr std::size_t kEndless = 1'000'000;
+  const std::size_t prose_width = options.breaks_rows ? options.width : kEndless;
   const std::string gap(kGap, ' ');
   std::size_t used = shown.empty() ? 0 : kGap * (shown.size() - 1);
   for (const std::size_t i : shown) {
@@ -189,10 +191,10 @@ std::string text_of(Table table, const RenderOptions& options) {
   std::string text = table.title.empty() ? "" : wrapped(printable(table.title), "", options.width) + "\n";
   if (std::ranges::any_of(table.columns, [](const Column& column) { return !head_of(column).empty(); })) {
     text += with_prose(line_of([&](std::size_t i) { return Text{head_of(table.columns[i])}; }), used,
-                       has_prose ? head_of(table.columns.back()) : "", options.width);
+                       has_prose ? head_of(table.columns.back()) : "", prose_width);
   }
   for (const std::vector<Text>& row : table.rows) {
-    text += with_prose(line_of([&](std::size_t i) { return row[i]; }), used, has_prose ? row.back().words : "", options.width);
+    text += with_prose(line_of([&](std::size_t i) { return row[i]; }), used, has_prose ? row.back().words : "", prose_width);
   }
   return text;
 }
