@@ -11,24 +11,35 @@
 
 namespace heatsoak::base {
 
+/// Usual standard deviation of the natural logarithm of a phase's duration at a measured speed: that of the fits of the response without
+/// one run, relative to the fit to all runs, in 44 calibrations.
+inline constexpr double kUsualSpread = 0.18;
+
 /// Part of a job.
 struct JobPhase {
   std::string what;          ///< name for the user; phases of the same name are work of the same kind
   double work_s = 0.0;       ///< expected duration in s on a usual computer
   double probability = 1.0;  ///< probability that the phase takes place
   std::string kind = {};     ///< kind of work, whose measured speed counts until that of `what` is measured; may be empty
+  /// Standard deviation of the natural logarithm of the duration at a measured speed, for example because the number of steps is unknown.
+  double spread = kUsualSpread;
+};
+
+/// Quantiles of a remaining time: 5 % of the jobs end before `p05_s`.
+struct RemainingTime {
+  double p025_s = 0.0;
+  double p05_s = 0.0;
+  double p50_s = 0.0;
+  double p95_s = 0.0;
+  double p975_s = 0.0;
 };
 
 struct JobEstimate {
-  std::string what;         ///< name of the present phase; empty before the first one
-  double elapsed_s = 0.0;   ///< since the job began
-  double done_share = 0.0;  ///< elapsed time divided by the mean total time, 0 to 1
-  /// Remaining time of the whole job: 10 % and 90 % quantiles, which differ if phases may be left out. Empty before the first phase.
-  std::optional<double> shortest_s = {};
-  std::optional<double> longest_s = {};
-  /// Remaining time that is most probably within a factor of two of the true one. Empty before the first phase.
-  std::optional<double> likely_s = {};
-  bool is_open = false;  ///< more phases of unknown length may follow, so that there is no longest time
+  std::string what;                             ///< name of the present phase; empty before the first one
+  double elapsed_s = 0.0;                       ///< since the job began
+  double done_share = 0.0;                      ///< elapsed time divided by the mean total time, 0 to 1
+  std::optional<RemainingTime> remaining = {};  ///< of the whole job; empty before the first phase
+  bool is_open = false;                         ///< more phases of unknown length may follow, so that there is no longest time
 };
 
 /// Handle of a job's progress; copies refer to the same job. All members may be called from any thread. A default-constructed handle
@@ -38,7 +49,8 @@ struct JobEstimate {
 /// a name that has not begun by that of its kind, and a kind that has not begun by the mean speed of the job.
 ///
 /// If phases may be left out, the remaining time has several values, each with a probability. A phase is taken to follow only together with
-/// all phases that are more probable.
+/// all phases that are more probable. Each value is uncertain by the spreads of its phases and by the speeds that are not measured yet. The
+/// spreads are independent, so their variances add; phases of the same unknown speed deviate together. Each value is log-normal.
 class JobProgress {
  public:
   using Now = std::function<double()>;  ///< returns a time in s that never decreases
@@ -52,8 +64,8 @@ class JobProgress {
 
   /// Sets the phases that follow the present one, in order. `is_open`: more phases of unknown length may follow.
   void expect(std::vector<JobPhase> later, bool is_open = false) const;
-  /// Changes the expected work of the present phase.
-  void resize(double work_s) const;
+  /// Changes the expected work of the present phase. `spread`: standard deviation of the logarithm of its unfinished part.
+  void resize(double work_s, double spread = kUsualSpread) const;
   /// Ends the present phase and begins the first expected phase of this name; expected phases before it are left out. A phase that was not
   /// expected takes as much work as an earlier one of its name, if there was one, and the expected ones remain. Returns the progress of the
   /// phase, which may be ignored.

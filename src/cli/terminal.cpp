@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "present/progress_words.h"
 #include "present/renderer.h"
 #include "present/wrap.h"
 
@@ -65,38 +66,6 @@ namespace {
 /// Overwrites the line of stderr. A text that filled the line would leave copies of itself.
 void overwrite_line(std::string_view text) { fmt::print(stderr, "\r\x1b[K{}", present::leading(text, terminal_width(STDERR_FILENO) - 1)); }
 
-std::string time_words(double time_s) {
-  constexpr double kLong_s = 120.0;
-  return time_s > kLong_s ? fmt::format("{:.0f} min", std::ceil(time_s / 60.0)) : fmt::format("{:.0f} s", std::ceil(time_s));
-}
-
-/// Formats "12 s left" if the likely time is within a factor of two of both ends of the range. Otherwise adds the end that is further away:
-/// "about 40 s left, possibly 3 min". If more phases may follow: "at least 12 s left".
-std::string remaining_words(const base::JobEstimate& estimate) {
-  constexpr double kWide_ratio = 2.0;
-  const double shortest_s = std::max(1.0, estimate.shortest_s.value_or(0.0));
-  const double longest_s = std::max(shortest_s, estimate.longest_s.value_or(0.0));
-  if (estimate.is_open) {
-    return fmt::format("at least {} left", time_words(shortest_s));
-  }
-  const double likely_s = std::clamp(estimate.likely_s.value_or(shortest_s), shortest_s, longest_s);
-  if (longest_s <= kWide_ratio * likely_s && likely_s <= kWide_ratio * shortest_s) {
-    return fmt::format("{} left", time_words(likely_s));
-  }
-  const bool is_end_later = longest_s / likely_s > likely_s / shortest_s;
-  return fmt::format("about {} left, possibly {}", time_words(likely_s), time_words(is_end_later ? longest_s : shortest_s));
-}
-
-/// Formats "evaluating: 39 %, 12 s left". `most_share`: largest share shown so far, which the shown one does not fall below. No share is
-/// known while phases of unknown length may follow.
-std::string words_of(const base::JobEstimate& estimate, double& most_share) {
-  if (estimate.is_open) {
-    return fmt::format("{}: {}", estimate.what, remaining_words(estimate));
-  }
-  most_share = std::max(most_share, std::min(estimate.done_share, 0.99));
-  return fmt::format("{}: {:.0f} %, {}", estimate.what, 100.0 * most_share, remaining_words(estimate));
-}
-
 }  // namespace
 
 /// A thread that overwrites one line on stderr several times per second, and removes it at the end.
@@ -115,8 +84,8 @@ class JobLine::Painter {
     // True if the wait ended because of the stop.
     while (!changed_.wait_for(lock, stop, kBetween, [&] { return stop.stop_requested(); })) {
       const base::JobEstimate estimate = progress.estimate();
-      if (estimate.elapsed_s >= kFirst_s && estimate.shortest_s) {
-        overwrite_line(words_of(estimate, most_share));
+      if (estimate.elapsed_s >= kFirst_s && estimate.remaining) {
+        overwrite_line(present::progress_words(estimate, most_share));
         is_visible = true;
       }
     }

@@ -58,19 +58,21 @@ std::optional<ContradictingRun> contradiction(const attribution::Selection& sele
 }
 
 /// Returns the phases of select_effects(). Usually the second round repeats the set of the first, and the search ends. The durations are
-/// averages of runs of 0.5 to 6 hours. `unit_s`: usual duration of one fit to the runs.
+/// averages of runs of 0.5 to 6 hours, spreads and probabilities those of 12 diagnoses. `unit_s`: usual duration of one fit to the runs.
 std::vector<base::JobPhase> selection_work(double unit_s) {
   using namespace attribution::selection_phases;
-  constexpr double kThirdRound = 0.15;
-  constexpr double kSomethingMissing = 0.8;
-  return {{kFirstFit, 0.1 * unit_s},
-          {kSearching, 0.4 * unit_s},
-          {kFollowing, 0.1 * unit_s},
-          {kSearching, 0.4 * unit_s},
-          {kFollowing, 0.1 * unit_s, kThirdRound},
-          {kSearching, 0.4 * unit_s, kThirdRound},
-          {kCurves, 0.3 * unit_s, kSomethingMissing},
-          {kLastFit, 0.3 * unit_s}};
+  constexpr double kThirdRound = 0.25;
+  constexpr double kSomethingMissing = 0.5;
+  constexpr double kSpread = 0.4;
+  constexpr double kSpread_last = 1.5;  // the last fit may start at its optimum
+  return {{kFirstFit, 0.1 * unit_s, 1.0, {}, kSpread},
+          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread},
+          {kFollowing, 0.1 * unit_s, 1.0, {}, kSpread},
+          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread},
+          {kFollowing, 0.1 * unit_s, kThirdRound, {}, kSpread},
+          {kSearching, 0.4 * unit_s, kThirdRound, {}, kSpread},
+          {kCurves, 0.3 * unit_s, kSomethingMissing, {}, kSpread},
+          {kLastFit, 0.1 * unit_s, 1.0, {}, kSpread_last}};
 }
 
 void add_fitted_holdouts(const motor::Motor& motor, const std::vector<recording::Recording>& held_out,
@@ -116,7 +118,9 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   input.train = runs_of(fitted, how, findings);
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
-  const std::vector<base::JobPhase> last{{kContradiction, 0.4 * unit_s}, {kBand, 0.2 * unit_s}, {kScoring, 0.01 * unit_s}};
+  constexpr double kSpread = 0.4;  // as in selection_work()
+  const std::vector<base::JobPhase> last{
+      {kContradiction, 0.4 * unit_s, 1.0, {}, 2.0 * kSpread}, {kBand, 0.2 * unit_s, 1.0, {}, kSpread}, {kScoring, 0.01 * unit_s}};
   std::vector<base::JobPhase> phases = selection_work(unit_s);
   phases.insert(phases.begin(), {kReading, 0.4 * unit_s});
   phases.insert(phases.end(), last.begin(), last.end());

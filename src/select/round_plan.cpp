@@ -108,11 +108,13 @@ void RoundPlan::expect(std::vector<base::JobPhase> certain, std::span<const Pros
   for (int count = samples; count < most_;) {
     double none = 1.0;
     double open = 0.0;
+    double variance = 0.0;
     for (std::size_t i = 0; i < prospects.size(); ++i) {
       ended[i] = std::max(ended[i], prospects[i].ended_probability(count, most_));
       const double is_open = 1.0 - ended[i];
       none *= std::pow(1.0 - is_open, scale);
       open += scale * is_open;
+      variance += scale * is_open * ended[i];
     }
     const int longer = std::min(most_, 2 * count);
     const double any = 1.0 - none;
@@ -122,6 +124,7 @@ void RoundPlan::expect(std::vector<base::JobPhase> certain, std::span<const Pros
     }
     for (base::JobPhase& each : round(open / any, longer, draw_count(duty_, longer) - draw_count(duty_, count))) {
       each.probability = any;
+      each.spread = std::hypot(each.spread, std::sqrt(variance) / open);
       phases.push_back(std::move(each));
     }
     count = longer;

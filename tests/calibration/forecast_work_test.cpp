@@ -47,7 +47,7 @@ class Played {
       count();
     }
   }
-  [[nodiscard]] double left_s() const { return *job_.estimate().likely_s; }
+  [[nodiscard]] double left_s() const { return job_.estimate().remaining->p50_s; }
   [[nodiscard]] const base::JobProgress& job() const { return job_; }
   [[nodiscard]] const CalibrationWork& work() const { return work_; }
   void wait(double wait_s) { time_s_ += wait_s; }
@@ -63,7 +63,7 @@ class Played {
 double left_after_whole_runs_s(double ratio) {
   Played played;
   const PhaseFits fits = played.work().of_whole_runs(3);
-  const auto times = [ratio](const FitWork& fit) { return static_cast<int>(std::lround(ratio * fit.simulations_count)); };
+  const auto times = [ratio](const FitWork& fit) { return static_cast<int>(std::lround(ratio * fit.simulations.count)); };
   FitCounter counter(played.job(), calibration_phases::kWholeRuns, fits);
   played.fit(counter, 3, times(fits.to_all), 3, times(fits.without_piece));
   return played.left_s();
@@ -104,8 +104,8 @@ TEST(CalibrationProgress, an_extension_that_is_slow_to_simulate_does_not_lengthe
   counter.fitted_all();
   counter.ended_model();
   // A fit counts with the mean of the usual number of simulations and that of the first extension.
-  const double expected = 0.5 * (fits.to_all.simulations_count + kSimulations);
-  EXPECT_NEAR(*played.job().estimate().longest_s, expected * Played::kSimulation_s, 0.2);
+  const double expected = 0.5 * (fits.to_all.simulations.count + kSimulations);
+  EXPECT_NEAR(played.job().estimate().remaining->p50_s, expected * Played::kSimulation_s, 0.2);
 }
 
 TEST(CalibrationProgress, screening_measures_the_cost_of_each_extension) {
@@ -131,7 +131,60 @@ TEST(CalibrationProgress, short_fits_of_candidates_shorten_the_rest) {
   }
   played.job().expect({});
   const double begun_s = 0.5 * kCandidates * 5.0 * Played::kSimulation_s;
-  EXPECT_LT(*played.job().estimate().longest_s, 1.4 * begun_s) << "twice as many simulations as in the ended fits would be 2.4 times";
+  EXPECT_LT(played.job().estimate().remaining->p50_s, 1.4 * begun_s) << "twice as many simulations as in the ended fits would be 2.4 times";
+}
+
+/// Returns the ratio of the ends of the range after `fits` of three fits to all runs with the usual number of simulations.
+double width_of_range(int fits) {
+  Played played;
+  FitCounter counter(played.job(), calibration_phases::kWholeRuns, played.work().of_whole_runs(3));
+  played.job().expect({});
+  played.fit(counter, fits, static_cast<int>(played.work().of_whole_runs(3).to_all.simulations.count), 0, 0);
+  const base::JobEstimate estimate = played.job().estimate();
+  return estimate.remaining->p975_s / estimate.remaining->p025_s;
+}
+
+// Ended fits show how many simulations the others need. What the models differ by stays unknown.
+TEST(CalibrationProgress, ended_fits_narrow_the_range) {
+  EXPECT_GT(width_of_range(1), 1.1 * width_of_range(3));
+  EXPECT_GT(width_of_range(3), 1.2);
+}
+
+// An unknown number of simulations per fit is a spread of the phase, which several models average.
+TEST(CalibrationProgress, phases_of_fits_declare_how_much_their_duration_scatters) {
+  const Played played;
+  const auto spread_of = [&](std::size_t models) {
+    return played.work().of_extending(std::vector<double>(models, 1.0)).phase(calibration_phases::kExtending).spread;
+  };
+  EXPECT_GT(spread_of(1), 0.4);
+  EXPECT_LT(spread_of(4), spread_of(1));
+  EXPECT_GT(spread_of(100), played.work().of_extending({1.0}).without_piece.simulations.calibration_sd);
+}
+
+// Ordinary fits often do not converge, with all runs and with a part of them.
+TEST(CalibrationProgress, slow_fits_to_all_runs_lengthen_those_without_a_piece) {
+  const auto left_s = [](int simulations) {
+    Played played;
+    played.job().expect({played.work().of_comparing().phase(calibration_phases::kComparing)});
+    FitCounter counter(played.job(), calibration_phases::kComparing, played.work().of_comparing());
+    played.fit(counter, 2, simulations, 0, 0);
+    return played.left_s();
+  };
+  EXPECT_GT(left_s(100), 2.0 * left_s(15));
+}
+
+// Fits that converge slowly to whole runs converge more slowly with an extension.
+TEST(CalibrationProgress, slow_convergence_lengthens_the_extensions) {
+  const auto extending_s = [](int simulations) {
+    Played played;
+    CalibrationWork work = played.work();
+    FitCounter counter(played.job(), calibration_phases::kWholeRuns, work.of_whole_runs(3));
+    EXPECT_FALSE(counter.simulations_without_piece());
+    played.fit(counter, 0, 0, 3, simulations);
+    work.set_convergence(counter.simulations_without_piece());
+    return work.of_extending({1.0}).all_s();
+  };
+  EXPECT_GT(extending_s(20), 3.0 * extending_s(10));
 }
 
 TEST(CalibrationProgress, nobody_who_watches_costs_nothing) {

@@ -14,26 +14,63 @@ namespace {
 const std::string kResponse = "response";
 const std::string kSimulation = "simulation";
 
-// Usual numbers of simulations per fit: geometric means over 56 calibrations with four runs each.
-constexpr double kSimulations = 15.0;
-constexpr double kSimulations_without_piece = 10.0;
-constexpr double kSimulations_screening = 11.0;
-constexpr double kSimulations_extended = 20.0;
-constexpr double kSimulations_extended_without_piece = 14.0;
-constexpr double kSimulations_ordinary = 14.0;
+// Geometric means and scatter over 44 calibrations with two to five runs. Ordinary fits without priors often do not converge, so that they
+// take 14 or 110 simulations.
+constexpr UsualSimulations kWhole{15.0, 0.25, 0.3};
+constexpr UsualSimulations kWhole_without_piece{10.0, 0.2, 0.1};
+constexpr UsualSimulations kShort{11.0, 0.2, 0.4};
+constexpr UsualSimulations kExtended{20.0, 0.55, 0.35};
+constexpr UsualSimulations kExtended_without_piece{14.0, 0.45, 0.3};
+// Once the fits of whole runs have shown how fast fits to these runs converge: the number grows with this power of theirs.
+constexpr UsualSimulations kExtended_at_usual_convergence{16.0, 0.3, 0.35};
+constexpr UsualSimulations kExtended_without_piece_at_usual_convergence{11.0, 0.25, 0.3};
+constexpr double kConvergence_power = 2.2;
+constexpr UsualSimulations kOrdinary{25.0, 0.85, 0.2};
+// The same calibrations: durations relative to one fit of the response. Half of the intervals are computed at once.
+constexpr double kIntervals_share = 0.15;
+constexpr double kIntervals_spread = 1.0;
+constexpr double kPredicting_share = 0.2;
 /// Duration of a fit of the response from a good start, relative to one from several starts.
 constexpr double kFromGoodStart_share = 0.85;
 
 /// Returns the expected number of simulations per fit: the mean of the ended fits, in which the usual number counts as one more.
 double expected_simulations(const FitWork& usual, double ended_simulations_count, double ended_fits_count) {
-  return (usual.simulations_count + ended_simulations_count) / (1.0 + ended_fits_count);
+  return (usual.simulations.count + ended_simulations_count) / (1.0 + ended_fits_count);
 }
 
+/// Work that is left of a phase, with the standard deviation that its unknown numbers of simulations cause.
+class LeftWork {
+ public:
+  /// Adds the fits of a model of one kind. The mean of the calibration lets all of them deviate together.
+  void add(double left_s, double expected_sd, double model_sd) {
+    left_s_ += left_s;
+    together_s_ += left_s * expected_sd;
+    of_model_s_ += left_s * model_sd;
+  }
+  /// Ends the fits of a model; models deviate from the mean independently.
+  void end_model() {
+    models_s2_ += of_model_s_ * of_model_s_;
+    of_model_s_ = 0.0;
+  }
+  [[nodiscard]] double left_s() const { return left_s_; }
+  /// Returns the standard deviation of the logarithm.
+  [[nodiscard]] double spread() const {
+    return left_s_ > 0.0 ? std::hypot(base::kUsualSpread, std::sqrt(together_s_ * together_s_ + models_s2_) / left_s_) : base::kUsualSpread;
+  }
+
+ private:
+  double left_s_ = 0.0;
+  double together_s_ = 0.0;
+  double of_model_s_ = 0.0;
+  double models_s2_ = 0.0;
+};
+
 /// Reports the finished work of the present phase, and the work that is left.
-void report_work(const base::JobProgress& job, const base::Progress& progress, double done_s, double left_s) {
+void report_work(const base::JobProgress& job, const base::Progress& progress, double done_s, const LeftWork& left) {
   constexpr double kUnits = 1e6;
+  const double left_s = left.left_s();
   if (progress && done_s + left_s > 0.0) {
-    job.resize(done_s + left_s);
+    job.resize(done_s + left_s, left.spread());
     progress(static_cast<std::size_t>(std::lround(kUnits * done_s / (done_s + left_s))), static_cast<std::size_t>(kUnits));
   }
 }
@@ -74,32 +111,52 @@ double PhaseFits::all_s() const {
   return (to_all.all_s() + without_piece.all_s()) * std::accumulate(cost_ratio.begin(), cost_ratio.end(), 0.0);
 }
 
-PhaseFits CalibrationWork::fits_of(double to_all_count, double simulations_count, double without_piece_count,
-                                   double simulations_without_piece_count) const {
-  return {{to_all_count, simulations_count, all_runs_s_}, {without_piece_count, simulations_without_piece_count, other_runs_s_}};
+base::JobPhase PhaseFits::phase(const std::string& what, double probability) const {
+  LeftWork work;
+  for (const double each : cost_ratio) {
+    for (const FitWork& fits : {to_all, without_piece}) {
+      work.add(each * fits.all_s(), fits.simulations.calibration_sd, fits.simulations.model_sd);
+    }
+    work.end_model();
+  }
+  return {what, work.left_s(), probability, kSimulation, work.spread()};
+}
+
+PhaseFits CalibrationWork::fits_of(double to_all_count, const UsualSimulations& simulations, double without_piece_count,
+                                   const UsualSimulations& simulations_without_piece) const {
+  return {{to_all_count, simulations, all_runs_s_}, {without_piece_count, simulations_without_piece, other_runs_s_}};
 }
 
 PhaseFits CalibrationWork::of_whole_runs(std::size_t starts) const {
-  return fits_of(static_cast<double>(starts), kSimulations, piece_count_, kSimulations_without_piece);
+  PhaseFits fits = fits_of(static_cast<double>(starts), kWhole, piece_count_, kWhole_without_piece);
+  fits.is_alike = false;
+  return fits;
 }
 
 PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratio) const {
-  PhaseFits fits = fits_of(1.0, kSimulations_extended, piece_count_, kSimulations_extended_without_piece);
+  UsualSimulations to_all = kExtended;
+  UsualSimulations without_piece = kExtended_without_piece;
+  if (simulations_without_piece_) {
+    const double ratio = std::pow(*simulations_without_piece_ / kWhole_without_piece.count, kConvergence_power);
+    to_all = kExtended_at_usual_convergence;
+    without_piece = kExtended_without_piece_at_usual_convergence;
+    to_all.count *= ratio;
+    without_piece.count *= ratio;
+  }
+  PhaseFits fits = fits_of(1.0, to_all, piece_count_, without_piece);
   fits.cost_ratio = std::move(cost_ratio);
   return fits;
 }
 
-PhaseFits CalibrationWork::of_comparing() const { return fits_of(2.0, kSimulations_ordinary, piece_count_, kSimulations_ordinary); }
+PhaseFits CalibrationWork::of_comparing() const { return fits_of(2.0, kOrdinary, piece_count_, kOrdinary); }
 
-FitWork CalibrationWork::of_screening(std::size_t candidates) const {
-  return {static_cast<double>(candidates), kSimulations_screening, candidate_s_};
-}
+FitWork CalibrationWork::of_screening(std::size_t candidates) const { return {static_cast<double>(candidates), kShort, candidate_s_}; }
 
 std::vector<base::JobPhase> CalibrationWork::all(bool refits_turning, std::span<const ExtensionRound> rounds) const {
   constexpr std::size_t kUsualStarts = 3;
   std::vector<base::JobPhase> phases(refits_turning ? 2 : 1, {calibration_phases::kFitting, response_s_, 1.0, kResponse});
-  phases.push_back({calibration_phases::kIntervals, 0.3 * response_s_, 1.0, kResponse});
-  phases.push_back({calibration_phases::kWholeRuns, of_whole_runs(kUsualStarts).all_s(), 1.0, kSimulation});
+  phases.push_back({calibration_phases::kIntervals, kIntervals_share * response_s_, 1.0, kResponse, kIntervals_spread});
+  phases.push_back(of_whole_runs(kUsualStarts).phase(calibration_phases::kWholeRuns));
   std::ranges::move(after_whole_runs(rounds), std::back_inserter(phases));
   return phases;
 }
@@ -108,12 +165,13 @@ std::vector<base::JobPhase> CalibrationWork::after_whole_runs(std::span<const Ex
   std::vector<base::JobPhase> phases;
   for (const ExtensionRound& round : rounds) {
     const std::vector<double> usual_costs(round.tested, 1.0);
-    phases.push_back({calibration_phases::kScreening, of_screening(round.candidates).all_s(), round.probability, kSimulation});
-    phases.push_back({calibration_phases::kExtending, of_extending(usual_costs).all_s(), round.probability, kSimulation});
+    const PhaseFits screening{of_screening(1), {}, std::vector<double>(round.candidates, 1.0)};
+    phases.push_back(screening.phase(calibration_phases::kScreening, round.probability));
+    phases.push_back(of_extending(usual_costs).phase(calibration_phases::kExtending, round.probability));
   }
-  phases.push_back({calibration_phases::kComparing, of_comparing().all_s(), 1.0, kSimulation});
+  phases.push_back(of_comparing().phase(calibration_phases::kComparing));
   phases.push_back({calibration_phases::kLeavingOut, other_response_s_, 1.0, kResponse});
-  phases.push_back({calibration_phases::kPredicting, 0.01 * response_s_, 1.0, kResponse});
+  phases.push_back({calibration_phases::kPredicting, kPredicting_share * response_s_, 1.0, kResponse});
   return phases;
 }
 
@@ -122,21 +180,37 @@ FitCounter::FitCounter(const base::JobProgress& job, const std::string& phase, P
       progress_(job.begin(phase)),
       to_all_{fits.to_all},
       without_piece_{fits.without_piece},
-      cost_ratio_(std::move(fits.cost_ratio)) {
+      cost_ratio_(std::move(fits.cost_ratio)),
+      is_alike_(fits.is_alike) {
   report();
 }
 
-double FitCounter::Count::expected() const { return expected_simulations(usual, ended_simulations_count, ended_fits_count); }
+FitCounter::Expected FitCounter::expected(const Count& count) const {
+  double ended_simulations_count = count.ended_simulations_count;
+  double ended_fits_count = count.ended_fits_count;
+  if (is_alike_) {
+    const Count& other = &count == &to_all_ ? without_piece_ : to_all_;
+    ended_simulations_count += other.ended_simulations_count * count.usual.simulations.count / std::max(1.0, other.usual.simulations.count);
+    ended_fits_count += other.ended_fits_count;
+  }
+  return {expected_simulations(count.usual, ended_simulations_count, ended_fits_count),
+          count.usual.simulations.calibration_sd / std::sqrt(1.0 + ended_fits_count)};
+}
 
-double FitCounter::Count::left_of_model_s() const {
+std::optional<double> FitCounter::simulations_without_piece() const {
+  const Count& count = without_piece_;
+  return count.ended_fits_count > 0.0 ? std::optional(count.ended_simulations_count / count.ended_fits_count) : std::nullopt;
+}
+
+double FitCounter::Count::left_of_model_s(double expected) const {
   const double fits = usual.fits_count - fits_of_model_count;
   if (fits <= 0.0) {
     return 0.0;
   }
   // A fit that needs more simulations than expected is assumed to need half as many again.
   constexpr double kMore_share = 0.5;
-  const double left = std::max(expected() - present_simulations_count, kMore_share * present_simulations_count);
-  return (left + (fits - 1.0) * expected()) * usual.simulation_s;
+  const double left = std::max(expected - present_simulations_count, kMore_share * present_simulations_count);
+  return (left + (fits - 1.0) * expected) * usual.simulation_s;
 }
 
 void FitCounter::simulated(Count& count) {
@@ -163,11 +237,16 @@ void FitCounter::ended_model() {
 }
 
 void FitCounter::report() const {
-  double left_s = cost_ratio_[model_] * (to_all_.left_of_model_s() + without_piece_.left_of_model_s());
-  for (std::size_t later = model_ + 1; later < cost_ratio_.size(); ++later) {
-    left_s += cost_ratio_[later] * (to_all_.of_model_s() + without_piece_.of_model_s());
+  LeftWork left;
+  for (std::size_t model = model_; model < cost_ratio_.size(); ++model) {
+    for (const Count* const count : {&to_all_, &without_piece_}) {
+      const auto [simulations_count, sd] = expected(*count);
+      const double left_s = model == model_ ? count->left_of_model_s(simulations_count) : count->of_model_s(simulations_count);
+      left.add(cost_ratio_[model] * left_s, sd, count->usual.simulations.model_sd);
+    }
+    left.end_model();
   }
-  report_work(job_, progress_, done_s_, left_s);
+  report_work(job_, progress_, done_s_, left);
 }
 
 ScreeningCounter::ScreeningCounter(const base::JobProgress& job, const FitWork& fits)
@@ -188,11 +267,15 @@ void ScreeningCounter::simulated(std::size_t candidate) {
     ended_fits_count += each.elapsed_s ? 1.0 : 0.0;
   }
   const double expected = expected_simulations(usual_, ended, ended_fits_count);
-  double left = 0.0;
+  const double expected_sd = usual_.simulations.calibration_sd / std::sqrt(1.0 + ended_fits_count);
+  LeftWork left;
   for (const Count& each : counts_) {
-    left += each.elapsed_s ? 0.0 : std::max(0.0, expected - each.simulations_count);
+    if (!each.elapsed_s) {
+      left.add(std::max(0.0, expected - each.simulations_count) * usual_.simulation_s, expected_sd, usual_.simulations.model_sd);
+      left.end_model();
+    }
   }
-  report_work(job_, progress_, done * usual_.simulation_s, left * usual_.simulation_s);
+  report_work(job_, progress_, done * usual_.simulation_s, left);
 }
 
 void ScreeningCounter::fitted(std::size_t candidate, double elapsed_s) {

@@ -1,6 +1,7 @@
 // Expected work of a calibration, for its progress: the phases that follow, and how long they usually take.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <mutex>
 #include <optional>
@@ -35,13 +36,20 @@ struct ExtensionRound {
   double probability = 1.0;  ///< probability that the round takes place
 };
 
+/// Usual number of simulations per fit, and the standard deviations of its logarithm.
+struct UsualSimulations {
+  double count = 0.0;           ///< geometric mean
+  double calibration_sd = 0.0;  ///< of the means of calibrations
+  double model_sd = 0.0;        ///< of the models of one calibration
+};
+
 /// Fits of a phase that share their usual number of simulations and the duration of each.
 struct FitWork {
-  double fits_count = 0.0;         ///< fits per model
-  double simulations_count = 0.0;  ///< usual number of simulations per fit
-  double simulation_s = 0.0;       ///< usual duration of one simulation of all runs of the fit, with sensitivities
+  double fits_count = 0.0;       ///< fits per model
+  UsualSimulations simulations;  ///< per fit
+  double simulation_s = 0.0;     ///< usual duration of one simulation of all runs of the fit, with sensitivities
 
-  [[nodiscard]] double all_s() const { return fits_count * simulations_count * simulation_s; }
+  [[nodiscard]] double all_s() const { return fits_count * simulations.count * simulation_s; }
 };
 
 /// Fits of a phase: for each model those to all runs, and those to the rest without one piece.
@@ -50,8 +58,11 @@ struct PhaseFits {
   FitWork without_piece;
   /// Duration of a simulation relative to the usual one, per model in the order of the fits.
   std::vector<double> cost_ratio = {1.0};
+  bool is_alike = true;  ///< both kinds of fits converge alike; false if some start far from the optimum
 
   [[nodiscard]] double all_s() const;
+  /// Returns the phase of these fits.
+  [[nodiscard]] base::JobPhase phase(const std::string& what, double probability = 1.0) const;
 };
 
 /// Expected durations of a calibration's phases: the number of fits, times the usual number of simulations in a fit, times the duration of
@@ -60,6 +71,9 @@ class CalibrationWork {
  public:
   /// `pieces`: number of left-out pieces. `threads`: 0 for all cores.
   CalibrationWork(std::span<const estimation::MeasuredRun> runs, std::size_t pieces, int threads);
+
+  /// Takes the mean number of simulations of the fits of whole runs without a piece, which shows how fast fits to these runs converge.
+  void set_convergence(std::optional<double> simulations_without_piece) { simulations_without_piece_ = simulations_without_piece; }
 
   /// Returns all phases. `refits_turning`: the response is fitted again with interpolated speeds.
   [[nodiscard]] std::vector<base::JobPhase> all(bool refits_turning, std::span<const ExtensionRound> rounds) const;
@@ -76,9 +90,10 @@ class CalibrationWork {
   [[nodiscard]] FitWork of_screening(std::size_t candidates) const;
 
  private:
-  [[nodiscard]] PhaseFits fits_of(double to_all_count, double simulations_count, double without_piece_count,
-                                  double simulations_without_piece_count) const;
+  [[nodiscard]] PhaseFits fits_of(double to_all_count, const UsualSimulations& simulations, double without_piece_count,
+                                  const UsualSimulations& simulations_without_piece) const;
 
+  std::optional<double> simulations_without_piece_;
   double piece_count_ = 0.0;
   double all_runs_s_ = 0.0;        ///< one simulation of all runs, parallel over the runs
   double other_runs_s_ = 0.0;      ///< the same without one piece
@@ -101,6 +116,8 @@ class FitCounter {
   /// Ends a fit to all runs, or without a piece.
   void fitted_all() { fitted(to_all_); }
   void fitted_without_piece() { fitted(without_piece_); }
+  /// Returns the mean number of simulations of the ended fits without a piece; nothing before the first.
+  [[nodiscard]] std::optional<double> simulations_without_piece() const;
   /// Ends the fits of a model; those that are left did not take place.
   void ended_model();
 
@@ -113,12 +130,16 @@ class FitCounter {
     double fits_of_model_count = 0.0;        ///< number of ended fits of the present model
     double present_simulations_count = 0.0;  ///< simulations of the present fit
 
-    /// Returns the expected number of simulations per fit.
-    [[nodiscard]] double expected() const;
-    /// Returns the expected duration of the fits that are left, relative to the cost of the model.
-    [[nodiscard]] double left_of_model_s() const;
-    [[nodiscard]] double of_model_s() const { return usual.fits_count * expected() * usual.simulation_s; }
+    /// Returns the duration of the fits of the present model that are left, with this number of simulations per fit.
+    [[nodiscard]] double left_of_model_s(double expected) const;
+    [[nodiscard]] double of_model_s(double expected) const { return usual.fits_count * expected * usual.simulation_s; }
   };
+  /// Expected number of simulations per fit, with the standard deviation of its logarithm.
+  struct Expected {
+    double simulations_count = 0.0;
+    double sd = 0.0;
+  };
+  [[nodiscard]] Expected expected(const Count& count) const;
 
   void simulated(Count& count);
   void fitted(Count& count);
@@ -128,6 +149,7 @@ class FitCounter {
   base::Progress progress_;
   Count to_all_, without_piece_;
   std::vector<double> cost_ratio_;
+  bool is_alike_ = true;
   std::size_t model_ = 0;  ///< index of the present model
   double done_s_ = 0.0;
 };
