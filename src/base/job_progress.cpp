@@ -82,7 +82,7 @@ struct JobProgress::State {
     std::string kind;
     double elapsed_s = 0.0;
     double work_s = 0.0;       ///< its expected duration
-    double variance_s2 = 0.0;  ///< of that, by the spreads of the ended phases
+    double variance_s2 = 0.0;  ///< variance of that by the spreads of the ended phases
     double count = 0.0;        ///< number of ended phases
   };
 
@@ -158,7 +158,7 @@ struct JobProgress::State {
     struct Level {
       double ratio = 1.0;        ///< measured duration relative to the expected one
       double assumed = 1.0;      ///< weight of the assumed speed in it; 1 if nothing is measured
-      double measured_sd = 0.0;  ///< of the logarithm, because the ended phases deviate by their spreads
+      double measured_sd = 0.0;  ///< standard deviation of its logarithm, because the ended phases deviate by their spreads
     };
     static Level level(const Measured* measured, double assumed_s, double otherwise) {
       if (!measured || measured->work_s <= 0.0) {

@@ -38,7 +38,7 @@ struct JobEstimate {
   std::string what;                             ///< name of the present phase; empty before the first one
   double elapsed_s = 0.0;                       ///< since the job began
   double done_share = 0.0;                      ///< elapsed time divided by the mean total time, 0 to 1
-  std::optional<RemainingTime> remaining = {};  ///< of the whole job; empty before the first phase
+  std::optional<RemainingTime> remaining = {};  ///< remaining time of the whole job; empty before the first phase
   bool is_open = false;                         ///< more phases of unknown length may follow, so that there is no longest time
 };
 

@@ -39,8 +39,8 @@ struct ExtensionRound {
 /// Usual number of simulations per fit, and the standard deviations of its logarithm.
 struct UsualSimulations {
   double count = 0.0;           ///< geometric mean
-  double calibration_sd = 0.0;  ///< of the means of calibrations
-  double model_sd = 0.0;        ///< of the models of one calibration
+  double calibration_sd = 0.0;  ///< scatter of the means of calibrations
+  double model_sd = 0.0;        ///< scatter of the models of one calibration
 };
 
 /// Fits of a phase that share their usual number of simulations and the duration of each.
