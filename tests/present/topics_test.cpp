@@ -76,7 +76,7 @@ TEST(Topics, ASignalIsDescribedFromItsRow) {
   const Document document = description_of("vehicle_speed", kShippedFolders);
   const Table& table = document.tables.front();
   EXPECT_EQ(labelled(table, "unit"), "m/s");
-  EXPECT_THAT(labelled(table, "log column"), HasSubstr("vehicle_speed_m_per_s"));
+  EXPECT_THAT(labelled(table, "log column"), HasSubstr("vehicle_speed_m_per_s: speed of the robot over the ground"));
   EXPECT_EQ(labelled(table, "averaging"), "mean of an interval");
   EXPECT_EQ(labelled(table, "default"), "0 m/s");
   EXPECT_THAT(labelled(table, "worst case"), HasSubstr("heats winding and bodies most"));
