@@ -136,8 +136,8 @@ PhaseFits CalibrationWork::of_whole_runs(std::size_t starts) const {
 PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratio) const {
   UsualSimulations to_all = kExtended;
   UsualSimulations without_piece = kExtended_without_piece;
-  if (simulations_without_piece_) {
-    const double ratio = std::pow(*simulations_without_piece_ / kWhole_without_piece.count, kConvergence_power);
+  if (simulations_without_piece_count_) {
+    const double ratio = std::pow(*simulations_without_piece_count_ / kWhole_without_piece.count, kConvergence_power);
     to_all = kExtended_at_usual_convergence;
     without_piece = kExtended_without_piece_at_usual_convergence;
     to_all.count *= ratio;
@@ -202,15 +202,15 @@ std::optional<double> FitCounter::simulations_without_piece() const {
   return count.ended_fits_count > 0.0 ? std::optional(count.ended_simulations_count / count.ended_fits_count) : std::nullopt;
 }
 
-double FitCounter::Count::left_of_model_s(double expected) const {
+double FitCounter::Count::left_of_model_s(double expected_count) const {
   const double fits = usual.fits_count - fits_of_model_count;
   if (fits <= 0.0) {
     return 0.0;
   }
   // A fit that needs more simulations than expected is assumed to need half as many again.
   constexpr double kMore_share = 0.5;
-  const double left = std::max(expected - present_simulations_count, kMore_share * present_simulations_count);
-  return (left + (fits - 1.0) * expected) * usual.simulation_s;
+  const double left = std::max(expected_count - present_simulations_count, kMore_share * present_simulations_count);
+  return (left + (fits - 1.0) * expected_count) * usual.simulation_s;
 }
 
 void FitCounter::simulated(Count& count) {

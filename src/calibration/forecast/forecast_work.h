@@ -73,7 +73,9 @@ class CalibrationWork {
   CalibrationWork(std::span<const estimation::MeasuredRun> runs, std::size_t pieces, int threads);
 
   /// Takes the mean number of simulations of the fits of whole runs without a piece, which shows how fast fits to these runs converge.
-  void set_convergence(std::optional<double> simulations_without_piece) { simulations_without_piece_ = simulations_without_piece; }
+  void set_convergence(std::optional<double> simulations_without_piece_count) {
+    simulations_without_piece_count_ = simulations_without_piece_count;
+  }
 
   /// Returns all phases. `refits_turning`: the response is fitted again with interpolated speeds.
   [[nodiscard]] std::vector<base::JobPhase> all(bool refits_turning, std::span<const ExtensionRound> rounds) const;
@@ -93,7 +95,7 @@ class CalibrationWork {
   [[nodiscard]] PhaseFits fits_of(double to_all_count, const UsualSimulations& simulations, double without_piece_count,
                                   const UsualSimulations& simulations_without_piece) const;
 
-  std::optional<double> simulations_without_piece_;
+  std::optional<double> simulations_without_piece_count_;
   double piece_count_ = 0.0;
   double all_runs_s_ = 0.0;        ///< one simulation of all runs, parallel over the runs
   double other_runs_s_ = 0.0;      ///< the same without one piece
@@ -131,8 +133,8 @@ class FitCounter {
     double present_simulations_count = 0.0;  ///< simulations of the present fit
 
     /// Returns the duration of the fits of the present model that are left, with this number of simulations per fit.
-    [[nodiscard]] double left_of_model_s(double expected) const;
-    [[nodiscard]] double of_model_s(double expected) const { return usual.fits_count * expected * usual.simulation_s; }
+    [[nodiscard]] double left_of_model_s(double expected_count) const;
+    [[nodiscard]] double of_model_s(double expected_count) const { return usual.fits_count * expected_count * usual.simulation_s; }
   };
   /// Expected number of simulations per fit, with the standard deviation of its logarithm.
   struct Expected {
