@@ -207,6 +207,26 @@ TEST(ForecastFit, TemperedLikelihoodLeavesThePriorItsSay) {
   EXPECT_GT(fit.covariance(0, 0), 1.5 * sure.covariance(0, 0));
 }
 
+/// The common factor of all heats, capacities and conductances is nearly undetermined. A descent that is damped in proportion to the
+/// curvature creeps along it. The optimum is compared with that of another fit that starts there.
+TEST(ForecastFit, FollowsNearlyUndeterminedDirectionsInFewSimulations) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"20 %\""};
+  estimation::TwoNodeTruth truth = sheet.truth;
+  truth.resistance_25C_ohm *= 1.1;
+  const std::vector<recording::Recording> logs = logs_of(truth, long_enough(), folder, 0, 3);
+  const ForecastSetup setup = forecast_setup(sheet.motor(folder), logs);
+  const ForecastModel model = setup.model();
+  const std::vector<estimation::MeasuredRun> runs = runs_of(setup, logs);
+  int simulations = 0;
+  ForecastRules rules{.is_tempered = false, .has_heat_factors = false, .on_simulation = [&] { ++simulations; }};
+  const ForecastFit fit = fit_forecast(model, runs, {}, model.start(), rules);
+  EXPECT_LE(simulations, 12);
+  rules.held = ForecastErrorModel{fit.error_K, 1.0};
+  const ForecastFit here = fit_forecast(model, runs, {}, fit.theta, rules);
+  EXPECT_LT((here.theta - fit.theta).cwiseAbs().maxCoeff(), 0.02);
+}
+
 /// A torque and speed log must give the same heat as a log with the current for that torque.
 TEST(Prediction, TakesATorqueForACurrent) {
   const Folder folder;

@@ -7,6 +7,7 @@
 
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "calibration/forecast/trust_region.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -44,7 +45,8 @@ class Fitting {
 
   ForecastFit fit(const Eigen::VectorXd& theta) {
     begin(theta);
-    for (int round = 0; round < rules_.rounds && assemble(); ++round) {
+    const bool can_simulate = assemble();
+    for (int round = 0; can_simulate && round < rules_.rounds; ++round) {
       set_starts();
       assemble();
       set_error(rules_.is_tempered);
@@ -77,6 +79,17 @@ class Fitting {
 
   [[nodiscard]] Eigen::Index own_count(std::size_t run) const { return 1 + static_cast<Eigen::Index>(unseen_[run].size()); }
 
+  /// Returns the derivatives of one predicted reading by the unknowns of a run.
+  [[nodiscard]] Eigen::VectorXd row_of(std::size_t r, const estimation::LinearisedRun& path, Eigen::Index k) const {
+    const Eigen::Index shared = model_.count();
+    Eigen::VectorXd row(shared + own_count(r));
+    row.head(shared + 1) = path.by_parameter.row(k).transpose();
+    for (std::size_t u = 0; u < unseen_[r].size(); ++u) {
+      row[shared + 1 + static_cast<Eigen::Index>(u)] = path.by_start(k, unseen_[r][u]);
+    }
+    return row;
+  }
+
   /// Simulates one run and sets up its normal equations. Order: θ, heat factor, starts of nodes without a sensor.
   [[nodiscard]] RunTerm term(std::size_t r) const {
     RunTerm out;
@@ -87,16 +100,12 @@ class Fitting {
     const Eigen::Index all = shared + own_count(r);
     out.normal.setZero(all, all);
     out.right.setZero(all);
-    Eigen::VectorXd row(all);
     for (Eigen::Index k = 0; k < out.path.residual_K.size(); ++k) {
       const double error_K = out.path.residual_K[k];
       if (std::isnan(error_K) || !counts(masks_[r], k)) {
         continue;
       }
-      row.head(shared + 1) = out.path.by_parameter.row(k).transpose();
-      for (std::size_t u = 0; u < unseen_[r].size(); ++u) {
-        row[shared + 1 + static_cast<Eigen::Index>(u)] = out.path.by_start(k, unseen_[r][u]);
-      }
+      const Eigen::VectorXd row = row_of(r, out.path, k);
       out.normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
       out.right += error_K * row;
       out.squares_K2 += error_K * error_K;
@@ -166,18 +175,14 @@ class Fitting {
     return 0.5 * sum;
   }
 
-  struct Equations {
-    Eigen::MatrixXd normal;
-    Eigen::VectorXd right;
-  };
   /// Normal equations of all runs with priors: θ first, then each run's own unknowns.
-  [[nodiscard]] Equations equations() const {
+  [[nodiscard]] NormalEquations equations() const {
     const Eigen::Index shared = model_.count();
     Eigen::Index all = shared;
     for (std::size_t r = 0; r < runs_.size(); ++r) {
       all += own_count(r);
     }
-    Equations out{Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all)};
+    NormalEquations out{Eigen::MatrixXd::Zero(all, all), Eigen::VectorXd::Zero(all)};
     out.normal.topLeftCorner(shared, shared) = model_.prior().precision;
     out.right.head(shared) = model_.prior().precision * (model_.prior().mean - theta_);
     Eigen::Index first = shared;
@@ -196,7 +201,7 @@ class Fitting {
     return out;
   }
 
-  void add_own_priors(std::size_t r, Eigen::Index first, Equations& out) const {
+  void add_own_priors(std::size_t r, Eigen::Index first, NormalEquations& out) const {
     // A strong prior holds a heat factor that is not fitted at its present logarithm of 0.
     const double heat_precision = with_heat_ ? 1.0 / (kHeatFactor_sd * kHeatFactor_sd) : 1e12;
     out.normal(first, first) += heat_precision;
@@ -222,37 +227,110 @@ class Fitting {
     }
   }
 
-  [[nodiscard]] Eigen::VectorXd step_of(Equations now, double damping) const {
-    now.normal.diagonal() *= 1.0 + damping;
-    return now.normal.ldlt().solve(now.right);
+  /// Returns the bounds and usual changes of all unknowns. The usual change is the prior standard deviation, at most 1 (a factor of e).
+  [[nodiscard]] StepLimits limits(const NormalEquations& now) const {
+    const Eigen::Index shared = model_.count();
+    const Eigen::VectorXd anywhere = Eigen::VectorXd::Constant(shared, kInfinity);
+    Eigen::VectorXd priors = Eigen::VectorXd::Zero(now.right.size());
+    priors.head(shared) = model_.prior().precision.diagonal();
+    StepLimits out{Eigen::VectorXd::Constant(now.right.size(), -kInfinity), Eigen::VectorXd::Constant(now.right.size(), kInfinity), {}};
+    out.low.head(shared) = model_.within_bounds(-anywhere) - theta_;
+    out.high.head(shared) = model_.within_bounds(anywhere) - theta_;
+    Eigen::Index first = shared;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      if (with_heat_) {
+        priors[first] = 1.0 / (kHeatFactor_sd * kHeatFactor_sd);
+      } else {
+        out.low[first] = out.high[first] = 0.0;
+      }
+      for (std::size_t u = 0; u < unseen_[r].size(); ++u) {
+        priors[first + 1 + static_cast<Eigen::Index>(u)] = std::pow(starts_[r].prior_sd_K[unseen_[r][u]], -2);
+      }
+      first += own_count(r);
+    }
+    out.scale = priors.cwiseMax(1.0);
+    return out;
+  }
+
+  /// Everything that a step changes.
+  struct State {
+    Eigen::VectorXd theta, heat_log;
+    std::vector<estimation::RunStart> starts;
+    std::vector<RunTerm> terms;
+  };
+  [[nodiscard]] State state() const { return {theta_, heat_log_, starts_, terms_}; }
+  void restore(State state) {
+    theta_ = std::move(state.theta);
+    heat_log_ = std::move(state.heat_log);
+    starts_ = std::move(state.starts);
+    terms_ = std::move(state.terms);
+  }
+
+  /// Moves by a step and returns the cost there, or ∞ if the simulation fails.
+  double cost_after(const Eigen::VectorXd& step) {
+    move(step);
+    return assemble() ? cost() : kInfinity;
+  }
+
+  /// Corrects a step that was too long for the linear model (second-order correction, Fletcher 1982): the derivatives before the step with
+  /// the residuals after it show how to return to the bottom of a curved valley. Returns the cost after the correction, or ∞.
+  double cost_corrected(const State& before, const TrustedStep& tried) {
+    constexpr double kLongest_share = 0.75;
+    std::vector<RunTerm> there = before.terms;
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      there[r].right.setZero();
+      for (Eigen::Index k = 0; k < there[r].path.residual_K.size(); ++k) {
+        const double error_K = terms_[r].path.residual_K[k];
+        if (!std::isnan(error_K) && counts(masks_[r], k)) {
+          there[r].right += error_K * row_of(r, there[r].path, k);
+        }
+      }
+    }
+    terms_ = std::move(there);
+    NormalEquations now = equations();
+    const StepLimits limited = limits(now);
+    now.right -= tried.damping * limited.scale.cwiseProduct(tried.step);
+    const Eigen::VectorXd correction = bounded_step(now, limited, tried.damping);
+    const bool is_small = limited.length_of(correction) < kLongest_share * limited.length_of(tried.step);
+    return is_small ? cost_after(correction) : kInfinity;
   }
 
   void descend(int steps) {
-    double damping = 1e-3;
-    constexpr double kMostDamping = 1e8;
+    // A smaller gain decides nothing: the parameters are within 0.14 standard deviations of the optimum.
+    constexpr double kSmall_nats = 0.01;
+    constexpr double kLeastRadius = 1e-4;
+    constexpr double kGood_ratio = 0.75;
+    constexpr double kPoor_ratio = 0.25;
     double best = cost();
+    // A start is usually within one prior standard deviation of the optimum.
+    double radius = std::sqrt(static_cast<double>(model_.count()));
     for (int step = 0; step < steps; ++step) {
-      const Equations now = equations();
-      bool is_better = false;
-      double gain = 0.0;
-      while (!is_better && damping < kMostDamping) {
-        const auto before = std::tuple(theta_, heat_log_, starts_, terms_);
-        move(step_of(now, damping));
-        const double there = assemble() ? cost() : kInfinity;
-        is_better = there < best;
-        if (is_better) {
-          gain = best - there;
-          best = there;
-          damping = std::max(1e-9, 0.2 * damping);
-        } else {
-          std::tie(theta_, heat_log_, starts_, terms_) = before;
-          damping *= 5.0;
-        }
-      }
-      constexpr double kSmall_nats = 1e-4;
-      if (gain < kSmall_nats) {
+      const NormalEquations now = equations();
+      const StepLimits limited = limits(now);
+      if (now.gain_of(bounded_step(now, limited, 0.0)) < kSmall_nats) {
         return;
       }
+      const State before = state();
+      double there = kInfinity;
+      while (!(there < best) && radius > kLeastRadius) {
+        const TrustedStep next = trusted_step(now, limited, radius);
+        const double length = limited.length_of(next.step);
+        there = cost_after(next.step);
+        const double ratio = (best - there) / now.gain_of(next.step);
+        if (!(there < best) && std::isfinite(there)) {
+          there = cost_corrected(before, next);
+        }
+        if (there < best) {
+          radius = ratio > kGood_ratio ? std::max(radius, 3.0 * length) : ratio > kPoor_ratio ? radius : length;
+        } else {
+          restore(before);
+          radius = 0.25 * length;
+        }
+      }
+      if (!(there < best)) {
+        return;
+      }
+      best = there;
     }
   }
 

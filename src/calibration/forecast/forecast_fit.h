@@ -27,7 +27,7 @@ struct ForecastRules {
   bool is_tempered = true;
   bool has_heat_factors = true;  ///< fits one heat factor per run if there are two runs or more
   int rounds = 3;                ///< number of fits, each followed by an update of error and weight
-  int steps = 25;                ///< Levenberg-Marquardt steps per round
+  int steps = 25;                ///< steps per round within a trust region
   /// Error and weight if they are fixed, so that costs can be compared; empty: estimated in each round.
   std::optional<ForecastErrorModel> held = {};
   int threads = 0;                           ///< 0: all cores; the result does not depend on it
