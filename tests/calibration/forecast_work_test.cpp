@@ -137,7 +137,10 @@ TEST(CalibrationProgress, short_fits_of_candidates_shorten_the_rest) {
 /// Returns the ratio of the ends of the range after `fits` of three fits to all runs with the usual number of simulations.
 double width_of_range(int fits) {
   Played played;
-  FitCounter counter(played.job(), calibration_phases::kWholeRuns, played.work().of_whole_runs(3));
+  PhaseFits work = played.work().of_whole_runs(3);
+  work.to_all.simulations.calibration_sd = work.without_piece.simulations.calibration_sd = 0.5;
+  work.is_alike = true;
+  FitCounter counter(played.job(), calibration_phases::kWholeRuns, work);
   played.job().expect({});
   played.fit(counter, fits, static_cast<int>(played.work().of_whole_runs(3).to_all.simulations.count), 0, 0);
   const base::JobEstimate estimate = played.job().estimate();
@@ -171,20 +174,6 @@ TEST(CalibrationProgress, slow_fits_to_all_runs_lengthen_those_without_a_piece) 
     return played.left_s();
   };
   EXPECT_GT(left_s(100), 2.0 * left_s(15));
-}
-
-// Fits that converge slowly to whole runs converge more slowly with an extension.
-TEST(CalibrationProgress, slow_convergence_lengthens_the_extensions) {
-  const auto extending_s = [](int simulations) {
-    Played played;
-    CalibrationWork work = played.work();
-    FitCounter counter(played.job(), calibration_phases::kWholeRuns, work.of_whole_runs(3));
-    EXPECT_FALSE(counter.simulations_without_piece());
-    played.fit(counter, 0, 0, 3, simulations);
-    work.set_convergence(counter.simulations_without_piece());
-    return work.of_extending({1.0}).all_s();
-  };
-  EXPECT_GT(extending_s(20), 3.0 * extending_s(10));
 }
 
 TEST(CalibrationProgress, nobody_who_watches_costs_nothing) {

@@ -39,12 +39,16 @@ TEST(ProgressWords, else_a_range_without_a_share) {
 
 TEST(ProgressWords, the_least_time_if_the_end_is_open) { EXPECT_EQ(words_of(14.1, 20.0, 90.0, true), "fitting: at least 12 s left"); }
 
-TEST(ProgressWords, times_below_a_second_need_no_distinction) { EXPECT_EQ(words_of(0.01, 0.1, 0.9), "fitting: 25 %, 1 s left"); }
+TEST(ProgressWords, the_last_seconds_need_no_distinction) {
+  EXPECT_EQ(words_of(0.01, 0.1, 0.9), "fitting: 25 %, less than 5 s left");
+  EXPECT_EQ(words_of(0.1, 3.0, 4.5), "fitting: 25 %, less than 5 s left");
+  EXPECT_EQ(words_of(4.0, 4.5, 5.0), "fitting: 25 %, 5 s left") << "97.5 % is above 5 s";
+}
 
 TEST(ProgressWords, the_share_does_not_fall) {
-  const base::RemainingTime known{3.0, 3.0, 3.0, 3.0, 3.0};
+  const base::RemainingTime known{30.0, 30.0, 30.0, 30.0, 30.0};
   double most_share = 0.5;
-  EXPECT_EQ(progress_words({.what = "a", .done_share = 0.2, .remaining = known}, most_share), "a: 50 %, 3 s left");
+  EXPECT_EQ(progress_words({.what = "a", .done_share = 0.2, .remaining = known}, most_share), "a: 50 %, 30 s left");
   progress_words({.what = "a", .done_share = 1.0, .remaining = known}, most_share);
   EXPECT_DOUBLE_EQ(most_share, 0.99) << "the job is not over";
 }

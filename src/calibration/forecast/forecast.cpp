@@ -98,7 +98,6 @@ class Search {
     const ForecastRules rules = of_piece();
     work_.emplace(runs_, out_.pieces.size(), threads_);
     score_ = score_pieces(*model_, runs_, out_.pieces, out_.fit.theta, &rules, &counter);
-    work_->set_convergence(counter.simulations_without_piece());
     // Quarters of one run share its load: they score, but they choose neither a network nor a fit without priors.
     const bool are_runs = runs_.size() > 1;
     for (int round = 0; are_runs && out_.pieces.size() >= kLeastPieces && round < kMostExtensions && could_gain(score_) && extend(round);

@@ -14,18 +14,13 @@ namespace {
 const std::string kResponse = "response";
 const std::string kSimulation = "simulation";
 
-// Geometric means and scatter over 44 calibrations with two to five runs. Ordinary fits without priors often do not converge, so that they
-// take 14 or 110 simulations.
-constexpr UsualSimulations kWhole{15.0, 0.25, 0.3};
-constexpr UsualSimulations kWhole_without_piece{10.0, 0.2, 0.1};
-constexpr UsualSimulations kShort{11.0, 0.2, 0.4};
-constexpr UsualSimulations kExtended{20.0, 0.55, 0.35};
-constexpr UsualSimulations kExtended_without_piece{14.0, 0.45, 0.3};
-// Once the fits of whole runs have shown how fast fits to these runs converge: the number grows with this power of theirs.
-constexpr UsualSimulations kExtended_at_usual_convergence{16.0, 0.3, 0.35};
-constexpr UsualSimulations kExtended_without_piece_at_usual_convergence{11.0, 0.25, 0.3};
-constexpr double kConvergence_power = 2.2;
-constexpr UsualSimulations kOrdinary{25.0, 0.85, 0.2};
+// Geometric means and scatter over 40 calibrations with two to four runs, by the training runs of two examinations.
+constexpr UsualSimulations kWhole{8.0, 0.1, 0.1};
+constexpr UsualSimulations kWhole_without_piece{5.0, 0.1, 0.1};
+constexpr UsualSimulations kShort{7.5, 0.25, 0.4};
+constexpr UsualSimulations kExtended{8.0, 0.3, 0.3};
+constexpr UsualSimulations kExtended_without_piece{7.0, 0.3, 0.3};
+constexpr UsualSimulations kOrdinary{6.5, 0.3, 0.1};
 // The same calibrations: durations relative to one fit of the response. Half of the intervals are computed at once.
 constexpr double kIntervals_share = 0.15;
 constexpr double kIntervals_spread = 1.0;
@@ -134,16 +129,7 @@ PhaseFits CalibrationWork::of_whole_runs(std::size_t starts) const {
 }
 
 PhaseFits CalibrationWork::of_extending(std::vector<double> cost_ratio) const {
-  UsualSimulations to_all = kExtended;
-  UsualSimulations without_piece = kExtended_without_piece;
-  if (simulations_without_piece_count_) {
-    const double ratio = std::pow(*simulations_without_piece_count_ / kWhole_without_piece.count, kConvergence_power);
-    to_all = kExtended_at_usual_convergence;
-    without_piece = kExtended_without_piece_at_usual_convergence;
-    to_all.count *= ratio;
-    without_piece.count *= ratio;
-  }
-  PhaseFits fits = fits_of(1.0, to_all, piece_count_, without_piece);
+  PhaseFits fits = fits_of(1.0, kExtended, piece_count_, kExtended_without_piece);
   fits.cost_ratio = std::move(cost_ratio);
   return fits;
 }
@@ -195,11 +181,6 @@ FitCounter::Expected FitCounter::expected(const Count& count) const {
   }
   return {expected_simulations(count.usual, ended_simulations_count, ended_fits_count),
           count.usual.simulations.calibration_sd / std::sqrt(1.0 + ended_fits_count)};
-}
-
-std::optional<double> FitCounter::simulations_without_piece() const {
-  const Count& count = without_piece_;
-  return count.ended_fits_count > 0.0 ? std::optional(count.ended_simulations_count / count.ended_fits_count) : std::nullopt;
 }
 
 double FitCounter::Count::left_of_model_s(double expected_count) const {

@@ -72,11 +72,6 @@ class CalibrationWork {
   /// `pieces`: number of left-out pieces. `threads`: 0 for all cores.
   CalibrationWork(std::span<const estimation::MeasuredRun> runs, std::size_t pieces, int threads);
 
-  /// Takes the mean number of simulations of the fits of whole runs without a piece, which shows how fast fits to these runs converge.
-  void set_convergence(std::optional<double> simulations_without_piece_count) {
-    simulations_without_piece_count_ = simulations_without_piece_count;
-  }
-
   /// Returns all phases. `refits_turning`: the response is fitted again with interpolated speeds.
   [[nodiscard]] std::vector<base::JobPhase> all(bool refits_turning, std::span<const ExtensionRound> rounds) const;
   /// Returns the phases after the fits of whole runs.
@@ -95,7 +90,6 @@ class CalibrationWork {
   [[nodiscard]] PhaseFits fits_of(double to_all_count, const UsualSimulations& simulations, double without_piece_count,
                                   const UsualSimulations& simulations_without_piece) const;
 
-  std::optional<double> simulations_without_piece_count_;
   double piece_count_ = 0.0;
   double all_runs_s_ = 0.0;        ///< one simulation of all runs, parallel over the runs
   double other_runs_s_ = 0.0;      ///< the same without one piece
@@ -118,8 +112,6 @@ class FitCounter {
   /// Ends a fit to all runs, or without a piece.
   void fitted_all() { fitted(to_all_); }
   void fitted_without_piece() { fitted(without_piece_); }
-  /// Returns the mean number of simulations of the ended fits without a piece; nothing before the first.
-  [[nodiscard]] std::optional<double> simulations_without_piece() const;
   /// Ends the fits of a model; those that are left did not take place.
   void ended_model();
 
