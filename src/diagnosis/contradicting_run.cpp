@@ -14,6 +14,13 @@ constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
+/// Returns whether the model has an effect or a deviation of this run alone. The other runs cannot determine its size, so that they predict
+/// the run badly although nothing contradicts them.
+bool has_own_effect(const estimation::Model& model, const estimation::MeasuredRun& run) {
+  const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
+  return std::ranges::any_of(model.conditional, is_met) || std::ranges::any_of(model.deviations, is_met);
+}
+
 }  // namespace
 
 std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
@@ -34,6 +41,9 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
   for (const std::string& recording : recordings) {
     const estimation::SomeRuns own = estimation::some_of(
         runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; });
+    if (std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return has_own_effect(model, run); })) {
+      continue;
+    }
     const estimation::SomeRuns others = estimation::some_of(
         runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) != recording; });
     const estimation::Posterior alone = estimation::fit_of(model, own);

@@ -19,7 +19,8 @@ struct ContradictingRun {
   double usual_K = 0.0;      ///< RMS error of the other recordings with the parameters of `by_others_K`
 };
 
-/// Returns the run that contradicts the others most; nothing if none does, or for fewer than three recordings.
+/// Returns the run that contradicts the others most; nothing if none does, or for fewer than three recordings. A run with an effect of its
+/// own in the model contradicts nothing.
 std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
                                                   const std::vector<std::vector<double>>& start_C,
                                                   const estimation::PosteriorOptions& options);

@@ -40,14 +40,43 @@ TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
 
+motor::Motor motor_of(const Runs& runs) {
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("contradicting_{}.toml", getpid());
+  motor::Motor motor = sheet_of(runs.make, file);
+  std::filesystem::remove(file);
+  return motor;
+}
+
+// A fan that blows in one run only is an effect of that run, not a contradiction.
+TEST(ContradictingRun, IsNoneWithAnEffectOfItsOwn) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    Runs runs = record(one);
+    Case with_fan = one;
+    with_fan.missing.heat.emplace_back([](const Moment& now, PerPart& heat) {
+      constexpr double kFan_W_per_K = 0.4;
+      heat[sleeve] -= kFan_W_per_K * (now.part_C[sleeve] - now.in.ambient_C);
+    });
+    runs.training[kMovedIn] = record(with_fan).training[kMovedIn];
+    recording::NamedLogs logs;
+    std::ranges::transform(runs.training, std::back_inserter(logs.fitted), &TrueRun::log);
+    const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({motor_of(runs), logs});
+    claim.expect(
+        std::ranges::none_of(answer.findings, [](const auto& each) { return std::holds_alternative<diagnosis::ContradictingRun>(each); }),
+        "the run is left out");
+    claim.expect(std::ranges::any_of(answer.diagnosis.effects, [](const auto& each) { return !each.condition.empty(); }),
+                 account(answer.diagnosis));
+  });
+  EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
+}
+
 // The written file is that of the other runs alone.
 TEST(ContradictingRun, IsLeftOutOfTheFit) {
   Case one;
   one.seed = 3;
   Runs runs = record(one);
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("contradicting_{}.toml", getpid());
-  const motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
+  const motor::Motor motor = motor_of(runs);
   const auto answer_to = [&](bool has_moved) {
     recording::NamedLogs logs;
     for (std::size_t r = 0; r < runs.training.size(); ++r) {
