@@ -17,7 +17,7 @@ answer() {
   local code=0
   "$heatsoak" "$@" > "$made/answer.txt" || code=$?
   sed "/^- /,\$d" "$made/answer.txt"
-  [ $code -le 1 ] || exit $code
+  [ $code -le 1 ] || [ $code = 3 ] || exit $code  # 3: the runs do not decide
 }
 
 uav=$data/tasrv_uav_motor

@@ -13,7 +13,7 @@ namespace heatsoak::base {
 
 /// Usual standard deviation of the natural logarithm of a phase's duration at a measured speed: that of the fits of the response without
 /// one run, relative to the fit to all runs, in 44 calibrations.
-inline constexpr double kUsualSpread = 0.18;
+inline constexpr double kUsualSpread_sd = 0.18;
 
 /// Part of a job.
 struct JobPhase {
@@ -22,7 +22,7 @@ struct JobPhase {
   double probability = 1.0;  ///< probability that the phase takes place
   std::string kind = {};     ///< kind of work, whose measured speed counts until that of `what` is measured; may be empty
   /// Standard deviation of the natural logarithm of the duration at a measured speed, for example because the number of steps is unknown.
-  double spread = kUsualSpread;
+  double spread = kUsualSpread_sd;
 };
 
 /// Quantiles of a remaining time: 5 % of the jobs end before `p05_s`.
@@ -65,7 +65,7 @@ class JobProgress {
   /// Sets the phases that follow the present one, in order. `is_open`: more phases of unknown length may follow.
   void expect(std::vector<JobPhase> later, bool is_open = false) const;
   /// Changes the expected work of the present phase. `spread`: standard deviation of the logarithm of its unfinished part.
-  void resize(double work_s, double spread = kUsualSpread) const;
+  void resize(double work_s, double spread = kUsualSpread_sd) const;
   /// Ends the present phase and begins the first expected phase of this name; expected phases before it are left out. A phase that was not
   /// expected takes as much work as an earlier one of its name, if there was one, and the expected ones remain. Returns the progress of the
   /// phase, which may be ignored.

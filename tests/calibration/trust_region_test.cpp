@@ -23,7 +23,7 @@ StepLimits unlimited() { return {Eigen::Vector3d::Constant(-kFar), Eigen::Vector
 TEST(TrustRegion, AStepWithoutLimitsIsTheMinimum) {
   const NormalEquations equations = valley();
   const TrustedStep found = trusted_step(equations, unlimited(), 1e3);
-  EXPECT_EQ(found.damping, 0.0);
+  EXPECT_EQ(found.damping_ratio, 0.0);
   EXPECT_LT((equations.normal * found.step - equations.right).norm(), 1e-8);
 }
 

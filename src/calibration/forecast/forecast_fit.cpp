@@ -289,8 +289,8 @@ class Fitting {
     terms_ = std::move(there);
     NormalEquations now = equations();
     const StepLimits limited = limits(now);
-    now.right -= tried.damping * limited.scale.cwiseProduct(tried.step);
-    const Eigen::VectorXd correction = bounded_step(now, limited, tried.damping);
+    now.right -= tried.damping_ratio * limited.scale.cwiseProduct(tried.step);
+    const Eigen::VectorXd correction = bounded_step(now, limited, tried.damping_ratio);
     const bool is_small = limited.length_of(correction) < kLongest_share * limited.length_of(tried.step);
     return is_small ? cost_after(correction) : kInfinity;
   }

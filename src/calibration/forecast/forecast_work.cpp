@@ -50,7 +50,8 @@ class LeftWork {
   [[nodiscard]] double left_s() const { return left_s_; }
   /// Returns the standard deviation of the logarithm.
   [[nodiscard]] double spread() const {
-    return left_s_ > 0.0 ? std::hypot(base::kUsualSpread, std::sqrt(together_s_ * together_s_ + models_s2_) / left_s_) : base::kUsualSpread;
+    return left_s_ > 0.0 ? std::hypot(base::kUsualSpread_sd, std::sqrt(together_s_ * together_s_ + models_s2_) / left_s_)
+                         : base::kUsualSpread_sd;
   }
 
  private:

@@ -25,13 +25,14 @@ struct StepLimits {
 
 struct TrustedStep {
   Eigen::VectorXd step;
-  double damping = 0.0;  ///< multiple of `scale` that was added to the diagonal of the normal matrix
+  double damping_ratio = 0.0;  ///< multiple of `scale` that was added to the diagonal of the normal matrix
 };
 
-/// Solves (normal + damping·scale)·step = right. A component that would leave its bounds stops there, and the others are solved again.
-Eigen::VectorXd bounded_step(const NormalEquations& equations, const StepLimits& limits, double damping);
+/// Solves (normal + damping_ratio·scale)·step = right. A component that would leave its bounds stops there, and the others are solved
+/// again.
+Eigen::VectorXd bounded_step(const NormalEquations& equations, const StepLimits& limits, double damping_ratio);
 
-/// Returns the best bounded step whose length is at most about `radius`.
-TrustedStep trusted_step(const NormalEquations& equations, const StepLimits& limits, double radius);
+/// Returns the best bounded step whose length is at most about `radius_ratio`.
+TrustedStep trusted_step(const NormalEquations& equations, const StepLimits& limits, double radius_ratio);
 
 }  // namespace heatsoak::calibration

@@ -25,8 +25,10 @@ std::string part_of(const std::string& signal) { return signal.substr(0, signal.
 /// Formats "RMS error of the stator: 0.35 K before, 0.13 K after." `refitted`: error with only the model's own parameters refitted; the
 /// difference to it is due to the effects. Nullptr: not stated.
 std::string error_in_words(std::string_view what, const std::string& signal, double before_K, const double* refitted_K, double after_K) {
-  const std::string own = refitted_K ? fmt::format("{:.2g} K with only the model's own parameters refitted, ", *refitted_K) : "";
-  return fmt::format("{} of the {}: {:.2g} K before, {}{:.2g} K after.", what, part_of(signal), before_K, own, after_K);
+  const std::string own =
+      refitted_K ? fmt::format("{} K with only the model's own parameters refitted, ", base::significant(*refitted_K, 2)) : "";
+  return fmt::format("{} of the {}: {} K before, {}{} K after.", what, part_of(signal), base::significant(before_K, 2), own,
+                     base::significant(after_K, 2));
 }
 
 std::string errors_in_training_runs(const diagnosis::Diagnosis& diagnosis) {
