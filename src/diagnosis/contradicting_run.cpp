@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/free_run_errors.h"
 #include "estimation/left_out_runs.h"
+#include "estimation/thresholds.h"
 
 namespace heatsoak::diagnosis {
 namespace {
@@ -19,6 +21,14 @@ constexpr double kContradicts_ratio = 5.0;
 bool has_own_effect(const estimation::Model& model, const estimation::MeasuredRun& run) {
   const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
   return std::ranges::any_of(model.conditional, is_met) || std::ranges::any_of(model.deviations, is_met);
+}
+
+/// Returns whether the other runs are followed clearly worse by the fit to all runs than without this one, which gave `without_K`. The
+/// effect of a run then stands for something that its law does not describe, such as a moved sensor.
+bool spoils(const estimation::Posterior& together, const std::vector<estimation::MeasuredRun>& others,
+            const estimation::Errors& without_K) {
+  return estimation::rms_K(estimation::open_loop_errors(together.model, others, {})) >
+         estimation::thresholds().clearly_other_ratio * estimation::rms_K(without_K);
 }
 
 }  // namespace
@@ -38,12 +48,14 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
   if (recordings.size() < 3) {
     return std::nullopt;
   }
+  const estimation::Posterior together =
+      estimation::fit_of(model, estimation::some_of(runs, start_C, options, [](const estimation::MeasuredRun&) { return true; }));
+  if (!std::isfinite(together.evidence_nats)) {
+    return std::nullopt;
+  }
   for (const std::string& recording : recordings) {
     const estimation::SomeRuns own = estimation::some_of(
         runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; });
-    if (std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return has_own_effect(model, run); })) {
-      continue;
-    }
     const estimation::SomeRuns others = estimation::some_of(
         runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) != recording; });
     const estimation::Posterior alone = estimation::fit_of(model, own);
@@ -53,6 +65,10 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
     }
     const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
     const estimation::Errors rest_K = estimation::open_loop_errors(rest.model, others.runs, {});
+    const bool has_effect = std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return has_own_effect(model, run); });
+    if (has_effect && !spoils(together, others.runs, rest_K)) {
+      continue;
+    }
     for (const auto& [signal, error] : estimation::open_loop_errors(rest.model, own.runs, others.runs)) {
       const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
                                   rest_K.contains(signal) ? rest_K.at(signal).rmse_K : error.rmse_K};
