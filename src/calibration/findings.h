@@ -80,7 +80,7 @@ struct FilePredictsBest {
   bool is_written = false;          ///< the values of the file are written
   bool is_better_than_fit = false;  ///< the file predicts better than the written values
 };
-/// Ordinary least squares of free runs predicts left-out pieces best.
+/// Ordinary least squares of free runs has the smallest expected error (RivalScore::expected_K).
 struct FreeRunsPredictBest {
   bool is_written = false;  ///< its parameters are written
 };

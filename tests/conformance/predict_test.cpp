@@ -89,7 +89,15 @@ TEST(Predict, QuietIsTheVerdictAlone) {
   const TemporaryFolder folder;
   const ProgramRun done = run({"predict", "--model", kMotor, log("match_1.csv"), "--quiet"}, in(folder));
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("forecasts 1 run"), testing::Not(HasSubstr("samples")), testing::Not(HasSubstr("- "))));
+  EXPECT_THAT(done.out, testing::AllOf(HasSubstr("forecasts 1 run"), testing::Not(HasSubstr("max. error")), testing::Not(HasSubstr("- "))));
+}
+
+// The stator's band of the data sheet contains a tenth of its samples in this log.
+TEST(Predict, TheVerdictWarnsOfABandThatContainsTooLittle) {
+  const TemporaryFolder folder;
+  const ProgramRun done = run({"predict", "--model", kMotor, log("match_3.csv"), "--quiet"}, in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("Do not rely on the band: of the stator in match_3, only 10 %")) << done.err;
 }
 
 TEST(Predict, SaysWhatALogLacks) {

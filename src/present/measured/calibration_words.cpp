@@ -122,7 +122,7 @@ std::string say(const calibration::FilePredictsBest& of) {
 }
 
 std::string say(const calibration::FreeRunsPredictBest& of) {
-  return fmt::format("least squares of free runs predicts left-out pieces best: {}",
+  return fmt::format("least squares of free runs has the smallest expected error in other runs: {}",
                      of.is_written ? "its parameters are written" : "`--forecast` writes its parameters");
 }
 

@@ -79,6 +79,23 @@ std::string largest_error_words(const calibration::Prediction& prediction) {
                                         signal_words(*worst), worst_run->name);
 }
 
+/// Names the signal that its band contains least, if that is less than half of what a correct band contains; else empty.
+std::string poor_band_words(const calibration::Prediction& prediction) {
+  constexpr double kPoor_share = 0.5 * base::kBand_share;
+  double least_share = kPoor_share;
+  std::string words;
+  for (const calibration::PredictedRun& run : prediction.runs) {
+    for (const calibration::PredictedSignal& each : run.signals) {
+      if (each.samples > 0 && each.coverage_share < least_share) {
+        least_share = each.coverage_share;
+        words = fmt::format("Do not rely on the band: of the {} in {}, only {:.0f} % of the samples lie within the {} band.",
+                            signal_words(each), run.name, 100.0 * each.coverage_share, base::level_text(base::kBand_share));
+      }
+    }
+  }
+  return words;
+}
+
 Document prediction_document(const motor::Motor& motor, const calibration::PredictionAnswer& answer,
                              std::span<const recording::LogReading> readings) {
   const calibration::Prediction& prediction = answer.prediction;
@@ -106,6 +123,9 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
         {fmt::format("{} forecasts {} run{}; {}.",
                      motor.fit ? fmt::format("The model {} of {}", motor.file.filename().string(), motor.fit->motor) : motor.id,
                      prediction.runs.size(), prediction.runs.size() == 1 ? "" : "s", largest)});
+  }
+  if (const std::string poor = poor_band_words(prediction); !poor.empty()) {
+    document.headline.push_back({poor});
   }
   document.paragraphs.emplace_back(fmt::format(
       "Each run is predicted from its first temperatures and its measured inputs. A correct {0} band contains {0} of the samples.",
