@@ -281,7 +281,7 @@ JobEstimate JobProgress::estimate() const {
   found.what = state.present->what;
   const std::vector<Outcome> outcomes = state.outcomes(time_s);
   const auto at = [&](double probability) { return quantile_s(outcomes, probability); };
-  found.remaining = RemainingTime{at(0.025), at(0.05), at(0.5), at(0.95), at(0.975)};
+  found.remaining = RemainingTime{at(0.025), at(0.5), at(0.975)};
   const double mean_s = std::accumulate(outcomes.begin(), outcomes.end(), 0.0,
                                         [](double sum_s, const Outcome& each) { return sum_s + each.probability * each.median_s; });
   found.done_share = found.elapsed_s > 0.0 ? found.elapsed_s / (found.elapsed_s + mean_s) : 0.0;

@@ -25,12 +25,10 @@ struct JobPhase {
   double spread = kUsualSpread_sd;
 };
 
-/// Quantiles of a remaining time: 5 % of the jobs end before `p05_s`.
+/// Quantiles of a remaining time: 2.5 % of the jobs end before `p025_s`.
 struct RemainingTime {
   double p025_s = 0.0;
-  double p05_s = 0.0;
   double p50_s = 0.0;
-  double p95_s = 0.0;
   double p975_s = 0.0;
 };
 

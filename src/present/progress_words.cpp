@@ -46,15 +46,15 @@ std::string progress_words(const base::JobEstimate& estimate, double& most_share
     return fmt::format("{}: at least {} left", estimate.what, in_unit(distinct_s(time.p025_s)).rounded_down().words());
   }
   most_share = std::max(most_share, std::min(estimate.done_share, kMost_share));
-  const double low_s = distinct_s(time.p05_s);
-  const double high_s = distinct_s(time.p95_s);
+  const double low_s = distinct_s(time.p025_s);
+  const double high_s = distinct_s(time.p975_s);
   // Nobody plans with the last seconds.
   constexpr double kShort_s = 5.0;
   if (time.p975_s <= kShort_s) {
     return fmt::format("{}: {:.0f} %, less than {:.0f} s left", estimate.what, 100.0 * most_share, kShort_s);
   }
   if (high_s > kWide_ratio * kWide_ratio * low_s) {
-    return fmt::format("{}: {} left", estimate.what, range_words(distinct_s(time.p025_s), distinct_s(time.p975_s)));
+    return fmt::format("{}: {} left", estimate.what, range_words(low_s, high_s));
   }
   // This time is within a factor of two of both ends.
   const double likely_s = std::clamp(time.p50_s, high_s / kWide_ratio, kWide_ratio * low_s);
