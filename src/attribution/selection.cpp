@@ -223,7 +223,7 @@ class Selector : Rounds {
       out_.is_unexplained = true;
       return;
     }
-    // Of several, the one with the weakest evidence goes first, which leaves room for the others.
+    // The effect with the weakest evidence is removed first; without it, the others may have a size.
     if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return is_zero(fit.model, best, named, m); });
         last != named.rend()) {
       refuse({.id = id_of(best.members[*last]), .reason = RefusalReason::no_size});

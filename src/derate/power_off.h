@@ -42,8 +42,9 @@ struct PowerOffReport {
   std::vector<double> start_C;  ///< every node before the loss of power: its hottest steady state at the full allowed current
   std::vector<PowerOffCase> cases;
 };
-/// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer, which counts
-/// as a motor at its limit. Assumes that the state is saved at the moment of the loss, and that the board has no sensor.
+/// Returns the current that the guard allows after each kind of power loss: none, 2 s, an unknown time, and a damaged buffer. The
+/// guard treats a damaged buffer like a motor at its limit. Assumes that the state is saved at the moment of the loss, and that the board
+/// has no sensor.
 PowerOffReport power_off_report(const Derating& derating);
 
 /// Larger than the last digit of a temperature in single precision and in the integer form.

@@ -57,21 +57,23 @@ std::optional<ContradictingRun> contradiction(const attribution::Selection& sele
   return contradicting_run(selection.after.model, train, selection.after.start_C, plain);
 }
 
+/// Scatter of the duration of a phase, from 12 diagnoses: standard deviation of its natural logarithm.
+constexpr double kSpread_sd = 0.4;
+
 /// Returns the phases of select_effects(). Usually the second round repeats the set of the first, and the search ends. The durations are
 /// averages of runs of 0.5 to 6 hours, spreads and probabilities those of 12 diagnoses. `unit_s`: usual duration of one fit to the runs.
 std::vector<base::JobPhase> selection_work(double unit_s) {
   using namespace attribution::selection_phases;
   constexpr double kThirdRound = 0.25;
   constexpr double kSomethingMissing = 0.5;
-  constexpr double kSpread = 0.4;
   constexpr double kSpread_last = 1.5;  // the last fit may start at its optimum
-  return {{kFirstFit, 0.1 * unit_s, 1.0, {}, kSpread},
-          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread},
-          {kFollowing, 0.1 * unit_s, 1.0, {}, kSpread},
-          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread},
-          {kFollowing, 0.1 * unit_s, kThirdRound, {}, kSpread},
-          {kSearching, 0.4 * unit_s, kThirdRound, {}, kSpread},
-          {kCurves, 0.3 * unit_s, kSomethingMissing, {}, kSpread},
+  return {{kFirstFit, 0.1 * unit_s, 1.0, {}, kSpread_sd},
+          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread_sd},
+          {kFollowing, 0.1 * unit_s, 1.0, {}, kSpread_sd},
+          {kSearching, 0.4 * unit_s, 1.0, {}, kSpread_sd},
+          {kFollowing, 0.1 * unit_s, kThirdRound, {}, kSpread_sd},
+          {kSearching, 0.4 * unit_s, kThirdRound, {}, kSpread_sd},
+          {kCurves, 0.3 * unit_s, kSomethingMissing, {}, kSpread_sd},
           {kLastFit, 0.1 * unit_s, 1.0, {}, kSpread_last}};
 }
 
@@ -118,9 +120,8 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   input.train = runs_of(fitted, how, findings);
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
-  constexpr double kSpread = 0.4;  // as in selection_work()
   const std::vector<base::JobPhase> last{
-      {kContradiction, 0.4 * unit_s, 1.0, {}, 2.0 * kSpread}, {kBand, 0.2 * unit_s, 1.0, {}, kSpread}, {kScoring, 0.01 * unit_s}};
+      {kContradiction, 0.4 * unit_s, 1.0, {}, 2.0 * kSpread_sd}, {kBand, 0.2 * unit_s, 1.0, {}, kSpread_sd}, {kScoring, 0.01 * unit_s}};
   std::vector<base::JobPhase> phases = selection_work(unit_s);
   phases.insert(phases.begin(), {kReading, 0.4 * unit_s});
   phases.insert(phases.end(), last.begin(), last.end());

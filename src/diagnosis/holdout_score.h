@@ -14,7 +14,7 @@ namespace heatsoak::diagnosis {
 
 /// The three motor files that are compared.
 struct ScoredFiles {
-  motor::Motor before;    ///< as given
+  motor::Motor before;    ///< file that the user gave
   motor::Motor refitted;  ///< with only its own parameters refitted to the training runs
   motor::Motor after;     ///< with the effects that were found
 };

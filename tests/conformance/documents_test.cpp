@@ -129,7 +129,7 @@ class Document : public testing::TestWithParam<std::string> {
       fs::create_directory_symlink(kSource / name, folder_.path() / name);
     }
     options_.folder = folder_.path();
-    options_.environment = {"DISPLAY", "WAYLAND_DISPLAY", "COLUMNS=80"};  // as in a usual terminal
+    options_.environment = {"DISPLAY", "WAYLAND_DISPLAY", "COLUMNS=80"};  // the width of a usual terminal
     options_.time_limit_s = 280;
   }
   TemporaryFolder folder_;

@@ -31,7 +31,7 @@ struct PlacedText {
 struct LegendSwatch {
   double x_px = 0.0;
   double y_px = 0.0;
-  std::optional<int> color_index = 0;  ///< as in ChartCurve
+  std::optional<int> color_index = 0;  ///< index in the palette; empty: the colour of levels (ChartCurve::color_index)
   bool is_dashed = false;
   bool is_band = false;
   bool is_dots = false;
