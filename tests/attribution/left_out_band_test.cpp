@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "calibration/forecast/prediction.h"
 #include "diagnosis/diagnosis_job.h"
 #include "examination.h"
 #include "scoring.h"
@@ -56,6 +57,26 @@ TEST(LeftOutBand, CoversUnseenRuns) {
   }
   EXPECT_GE(covered / count, 0.85);
   EXPECT_LE(covered / count, 0.98);
+}
+
+/// A left-out recording with an effect of its own is predicted by a model with fewer effects than the others.
+TEST(LeftOutBand, DoesNotDependOnTheOrderOfTheRecordings) {
+  Case one;
+  one.seed = 2;
+  one.missing = subjects()[2].make(1.0);
+  const diagnosis::DiagnosisAnswer answer = answer_of(one);
+  ASSERT_FALSE(answer.diagnosis.effects.empty());
+  const Runs runs = record(one);
+  const std::vector<recording::Recording> logs = logs_of(runs.training);
+  motor::Motor without = answer.motor;
+  without.effects.clear();
+  const std::vector<calibration::LeftOutRecording> all{{logs[0], {answer.diagnosis.runs[0]}, answer.motor},
+                                                       {logs[1], {answer.diagnosis.runs[1]}, without}};
+  const motor::ForecastBand band = calibration::band_of_left_out(all);
+  const motor::ForecastBand reversed = calibration::band_of_left_out(std::vector{all[1], all[0]});
+  EXPECT_NEAR(band.width_ratio, reversed.width_ratio, 1e-6);
+  EXPECT_NEAR(band.unknown_heat_share[0], reversed.unknown_heat_share[0], 1e-6);
+  EXPECT_NEAR(band.heat_factor_sd, reversed.heat_factor_sd, 1e-6);
 }
 
 TEST(LeftOutBand, NeedsTwoRecordings) {

@@ -64,7 +64,7 @@ struct Sampled {
   double slot_s = 0.0;
 };
 
-Sampled sampled(const ForecastModel& model, const estimation::MeasuredRun& run, const PredictedPiece& piece) {
+Sampled sampled(const estimation::MeasuredRun& run, const PredictedPiece& piece) {
   const estimation::LinearisedRun& path = piece.path;
   std::vector<Eigen::Index> known;
   for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
@@ -84,9 +84,8 @@ Sampled sampled(const ForecastModel& model, const estimation::MeasuredRun& run, 
   out.error_K = path.residual_K(rows);
   out.of_parameters_K2 = by_theta * piece.covariance * by_theta.transpose();
   out.by_heat_K = path.by_parameter(rows, path.by_parameter.cols() - 1);
-  const double heat_W = rms_heat_W(model.network(), piece.values, run, path.state_C);
   for (const Eigen::MatrixXd& response : responses_K_per_W(path, run)) {
-    out.by_flux_K.emplace_back(heat_W * response(rows, Eigen::all));
+    out.by_flux_K.emplace_back(piece.heat_W * response(rows, Eigen::all));
   }
   out.noise_K.resize(static_cast<Eigen::Index>(rows.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -188,23 +187,22 @@ Eigen::VectorXd forecast_sd_K(const estimation::LinearisedRun& path, const estim
 
 motor::ForecastBand usual_band(double duration_s) { return {{kUsual_share, kUsual_share}, duration_s / 3.0, kUsual_share, 1.0}; }
 
-motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
-                             std::span<const PredictedPiece> pieces, std::optional<std::size_t> dependent_pieces) {
+motor::ForecastBand fit_band(std::span<const estimation::MeasuredRun> runs, std::span<const PredictedPiece> pieces,
+                             std::optional<std::size_t> dependent_pieces) {
   double longest_s = 0.0;
   for (const estimation::MeasuredRun& run : runs) {
     longest_s = std::max(longest_s, duration_s(run));
   }
   const KnownBefore before{{std::log(kUsual_share), std::log(kUsual_share), std::log(longest_s / 3.0), std::log(kUsual_share)}};
   std::vector<Sampled> all;
-  std::ranges::transform(pieces, std::back_inserter(all), [&](const PredictedPiece& each) { return sampled(model, runs[each.run], each); });
+  std::ranges::transform(pieces, std::back_inserter(all), [&](const PredictedPiece& each) { return sampled(runs[each.run], each); });
   const Coordinates at = most_probable(all, before);
   motor::ForecastBand band{{std::exp(at[0]), std::exp(at[1])}, std::exp(at[2]), std::exp(at[3]), 1.0};
   double ratio = 0.0;
   for (const PredictedPiece& piece : pieces) {
     const estimation::MeasuredRun& run = runs[piece.run];
-    const double heat_W = rms_heat_W(model.network(), piece.values, run, piece.path.state_C);
     const Eigen::VectorXd sd_K =
-        forecast_sd_K(piece.path, run, piece.covariance, Eigen::MatrixXd::Zero(piece.path.states, piece.path.states), heat_W, band);
+        forecast_sd_K(piece.path, run, piece.covariance, Eigen::MatrixXd::Zero(piece.path.states, piece.path.states), piece.heat_W, band);
     std::vector<double> sizes;
     for (Eigen::Index row = 0; row < sd_K.size(); ++row) {
       if (!std::isnan(piece.path.residual_K[row])) {

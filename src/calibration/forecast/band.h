@@ -25,7 +25,7 @@ motor::ForecastBand usual_band(double duration_s);
 /// share base::kBand_share of the errors. Student's distribution accounts for the small number of errors. Its degrees of freedom are the
 /// number of independent errors if each piece is a whole recording; parts of the same recordings share errors, so `dependent_pieces` (at
 /// least 1) then gives the degrees.
-motor::ForecastBand fit_band(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs,
-                             std::span<const PredictedPiece> pieces, std::optional<std::size_t> dependent_pieces = {});
+motor::ForecastBand fit_band(std::span<const estimation::MeasuredRun> runs, std::span<const PredictedPiece> pieces,
+                             std::optional<std::size_t> dependent_pieces = {});
 
 }  // namespace heatsoak::calibration

@@ -292,17 +292,11 @@ class Search {
   /// Fits the band. Without left-out pieces it uses the fitted runs, with one degree of freedom, and does not narrow the band.
   void set_band() {
     if (score_.pieces.empty()) {
-      PredictedPiece own;
       for (std::size_t r = 0; r < runs_.size(); ++r) {
-        const Eigen::VectorXd& start_C = out_.fit.starts[r].state_C;
-        own.run = r;
-        own.path = model_->along(runs_[r], out_.fit.theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
-        own.covariance = out_.fit.covariance;
-        own.values = model_->values_in(runs_[r], out_.fit.theta, 0.0);
-        score_.pieces.push_back(own);
+        score_.pieces.push_back(predicted_from(*model_, out_.fit.theta, out_.fit.covariance, runs_[r], r, out_.fit.starts[r].state_C));
       }
     }
-    out_.band = fit_band(*model_, runs_, score_.pieces, std::max<std::size_t>(1, out_.pieces.size()));
+    out_.band = fit_band(runs_, score_.pieces, std::max<std::size_t>(1, out_.pieces.size()));
     out_.band.width_ratio = out_.pieces.empty() ? std::max(1.0, out_.band.width_ratio) : out_.band.width_ratio;
   }
 

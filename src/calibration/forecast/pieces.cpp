@@ -51,12 +51,6 @@ ForecastFit fitted_without(const ForecastModel& model, std::span<const estimatio
   return fit;
 }
 
-PredictedPiece predicted_from(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
-                              const estimation::MeasuredRun& run, std::size_t index, const Eigen::VectorXd& start_C) {
-  return {index, model.along(run, theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())}), covariance,
-          model.values_in(run, theta, 0.0)};
-}
-
 PredictedPiece predicted(const ForecastModel& model, std::span<const estimation::MeasuredRun> runs, const Piece& piece,
                          const ForecastFit& fit) {
   const estimation::MeasuredRun& run = runs[piece.run];
@@ -72,6 +66,13 @@ PredictedPiece predicted(const ForecastModel& model, std::span<const estimation:
 }
 
 }  // namespace
+
+PredictedPiece predicted_from(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                              const estimation::MeasuredRun& run, std::size_t index, const Eigen::VectorXd& start_C) {
+  estimation::LinearisedRun path = model.along(run, theta, 0.0, {start_C.data(), static_cast<std::size_t>(start_C.size())});
+  const double heat_W = rms_heat_W(model.network(), model.values_in(run, theta, 0.0), run, path.state_C);
+  return {index, std::move(path), covariance, heat_W};
+}
 
 PredictedPiece predicted_run(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
                              const estimation::MeasuredRun& run, std::size_t index) {

@@ -39,8 +39,12 @@ struct PredictedPiece {
   std::size_t run = 0;
   estimation::LinearisedRun path;  ///< with logarithm 0 of the heat factor; residual_K is NaN in rows that are not scored
   Eigen::MatrixXd covariance;      ///< covariance of θ
-  std::vector<double> values;      ///< the network's parameters
+  double heat_W = 0.0;             ///< RMS heat of the run in the model that predicts it, from rms_heat_W()
 };
+
+/// Predicts a run, whose index is `index`, from given temperatures. `covariance` is that of θ.
+PredictedPiece predicted_from(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,
+                              const estimation::MeasuredRun& run, std::size_t index, const Eigen::VectorXd& start_C);
 
 /// Predicts a run, whose index is `index`, from its first temperatures. `covariance` is that of θ.
 PredictedPiece predicted_run(const ForecastModel& model, const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance,

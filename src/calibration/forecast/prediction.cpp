@@ -153,7 +153,6 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
 }
 
 motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out) {
-  std::optional<ForecastModel> model;
   std::vector<estimation::MeasuredRun> runs;
   std::vector<PredictedPiece> pieces;
   for (const LeftOutRecording& each : left_out) {
@@ -163,9 +162,8 @@ motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out)
       pieces.push_back(predicted_run(file.model, file.model.start(), file.covariance, run, runs.size()));
       runs.push_back(run);
     }
-    model = std::move(file.model);
   }
-  return fit_band(model.value(), runs, pieces);
+  return fit_band(runs, pieces);
 }
 
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options) {

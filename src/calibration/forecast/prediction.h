@@ -65,8 +65,8 @@ struct LeftOutRecording {
   motor::Motor without;
 };
 
-/// Fits the band to the errors of predictions of recordings (at least one) that the parameters were not fitted to. All motors must have the
-/// same effects. Throws Failure (numerics_failed) if temperatures diverge.
+/// Fits the band to the errors of predictions of recordings (at least one) that the parameters were not fitted to. Throws
+/// Failure (numerics_failed) if temperatures diverge.
 motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out);
 
 }  // namespace heatsoak::calibration
