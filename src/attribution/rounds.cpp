@@ -95,9 +95,6 @@ void Rounds::begin() {
   setup_ = std::move(first.setup);
   out_.weights = setup_.weights;
   out_.mean_heat_W = setup_.mean_heat_W;
-  const estimation::Thresholds& limits = estimation::thresholds();
-  out_.material_W = std::max(
-      {setup_.material_W, limits.material_share * out_.mean_heat_W, limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
   list_ = candidates_for(input_.model, input_.runs);
   if (is_speed_open_) {
     // Heat at the stator may be the loss at the speed that was not logged.
@@ -362,8 +359,19 @@ void Rounds::own_parameters(const Judged& judged) {
   std::vector<int> doubted;
   std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });
   if (!doubted.empty()) {
-    const estimation::Model with_changes = with_members(doubted, search_->at_best(doubted), ShapesAre::held);
-    out_.own = estimation::posterior_of(with_changes, input_.runs, starts_of(with_changes), setup_.around(judged.best_place));
+    SetSearch::AtBest at = search_->at_best(doubted);
+    const auto fit_from = [&] {
+      const estimation::Model with_changes = with_members(doubted, at, ShapesAre::held);
+      return estimation::try_posterior_of(with_changes, input_.runs, starts_of(with_changes), setup_.around(judged.best_place));
+    };
+    out_.own = fit_from();
+    if (!std::isfinite(out_.own.evidence_nats)) {
+      // Without the effects, the linear solution may be far from any plausible temperature.
+      at.sizes.setZero();
+      at.theta.setZero();
+      out_.own = fit_from();
+    }
+    out_.own = std::isfinite(out_.own.evidence_nats) ? out_.own : out_.before;
   }
   // An effect that is missing here biases the whitened fit even without drift.
   out_.own = more_predictive(std::move(out_.own), input_.runs);

@@ -21,6 +21,7 @@ namespace {
 class Selector : Rounds {
  public:
   using Rounds::Rounds;
+  using Names = std::vector<std::size_t>;  ///< places of named members in the best set
 
   Selection run() {
     decide(run_rounds());
@@ -32,9 +33,9 @@ class Selector : Rounds {
     const double sure = estimation::named_probability();
     const EffectSet& best = search_->sets().front();
     std::vector<int> supported;
-    std::vector<std::size_t> named;
+    Names named;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
-      const double probability = search_->family_probability(best, m);
+      const double probability = probability_of(best, m);
       if (!is_parameter(best.members[m]) && probability > sure && needs_one_run(judged, best, m)) {
         refuse({.id = id_of(best.members[m]), .reason = RefusalReason::one_run_only});
         continue;
@@ -51,7 +52,7 @@ class Selector : Rounds {
     const estimation::Model with_best = with_members(supported, search_->at_best(supported), ShapesAre::held);
     const estimation::Posterior full =
         estimation::try_posterior_of(with_best, input_.runs, starts_of(with_best), setup_.with(setup_.grid.at(judged.best_place)));
-    out_.left_W = left_by(std::isfinite(full.evidence_nats) ? full : out_.before);
+    take_left_heat(std::isfinite(full.evidence_nats) ? full : out_.before);
     const bool is_something_missing = out_.is_material() || out_.nothing_probability < 1.0 - sure;
     if (rules_.scans_regressors && !is_speed_open_ && (is_something_missing || !named.empty())) {
       scan(judged, best);
@@ -64,25 +65,49 @@ class Selector : Rounds {
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
     if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats &&
-        estimation::is_confirmed(scan.front().left_out_gain_nats)) {
+        estimation::is_confirmed(scan.front().left_out_gain_nats) &&
+        // The law of an effect has another shape in every motor. A curve that only corrects it is no further effect.
+        (out_.is_material() || named.empty() || beside(scan.front(), named).size() < named.size())) {
       follow_curve(judged, best, named, scan.front());
       return;
     }
     if (out_.is_material()) {
-      keep_what_reduces_error(best, named, estimation::thresholds().beside_unknown_share, RefusalReason::unknown_heat_remains);
+      keep_what_reduces_error(best, named, estimation::thresholds().beside_unknown_share, RefusalReason::unknown_heat_remains,
+                              [&](const Names& names) { return error_with_K(best, names); });
       out_.is_unexplained = named.empty();
     }
-    if (input_.usual.flux_W > 0.0) {
-      keep_what_helps(best, named);
-    }
+    keep_what_helps(best, named);
     build(judged, best, named);
   }
 
+  /// Records the unknown heat of a fit, and the heat that would matter in its model.
+  void take_left_heat(const estimation::Posterior& fit) {
+    const estimation::Thresholds& limits = estimation::thresholds();
+    out_.left_W = left_by(fit);
+    out_.material_W = std::max({estimation::material_heat_W(fit.fitted, limits.material_K), limits.material_share * out_.mean_heat_W,
+                                limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
+  }
+
+  /// Returns the probability of a name. What differs in some runs is one question, so its probability includes the effects of the same
+  /// runs that may replace it. The answer lists them as indistinguishable.
+  [[nodiscard]] double probability_of(const EffectSet& best, std::size_t member) const {
+    const estimation::Condition own = condition_of(best.members[member]);
+    if (own.empty()) {
+      return search_->family_probability(best, member);
+    }
+    std::vector<int> others = search_->stand_ins(best, member, estimation::thresholds().distinct_nats);
+    std::erase_if(others, [&](int other) { return condition_of(other) != own; });
+    return search_->family_probability(best, member, others);
+  }
+
+  [[nodiscard]] estimation::Condition condition_of(int member) const {
+    return is_parameter(member) ? estimation::Condition{} : candidates()[static_cast<std::size_t>(member)].condition;
+  }
   [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
 
   /// True for an effect of all runs that left-out recordings do not confirm.
   [[nodiscard]] bool needs_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
-    if (!candidates()[static_cast<std::size_t>(best.members[member])].condition.empty()) {
+    if (!condition_of(best.members[member]).empty()) {
       return false;
     }
     std::vector<int> others = best.members;
@@ -120,21 +145,23 @@ class Selector : Rounds {
     out_.rounds.back().scan = scan_regressors(input, rules_, kMostReported);
   }
 
+  /// Returns the names that stay beside a curve.
+  [[nodiscard]] static Names beside(const ScanResult& curve, Names named) {
+    std::erase_if(named, [&](std::size_t m) { return std::ranges::find(curve.beside, static_cast<int>(m)) == curve.beside.end(); });
+    return named;
+  }
+
   /// Replaces the effects that the curve explains better by the curve.
-  void follow_curve(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named, const ScanResult& curve) {
-    std::vector<std::size_t> stay;
+  void follow_curve(const Judged& judged, const EffectSet& best, const Names& named, const ScanResult& curve) {
+    Names stay = beside(curve, named);
     for (const std::size_t m : named) {
-      if (std::ranges::find(curve.beside, static_cast<int>(m)) != curve.beside.end()) {
-        stay.push_back(m);
-      } else {
+      if (std::ranges::find(stay, m) == stay.end()) {
         refuse({.id = id_of(best.members[m]),
                 .reason = RefusalReason::curve_is_better,
                 .signal = out_.regressors[static_cast<std::size_t>(curve.term.regressor)].name});
       }
     }
-    if (input_.usual.flux_W > 0.0) {
-      keep_what_helps(best, stay);
-    }
+    keep_what_helps(best, stay);
     build(judged, best, stay);
     add_curve(judged, curve);
     out_.is_unexplained = true;
@@ -145,7 +172,7 @@ class Selector : Rounds {
   }
 
   /// Returns the RMS error in K of whole training runs with some members of the best set; ∞ if the fit fails.
-  [[nodiscard]] double error_with_K(const EffectSet& best, const std::vector<std::size_t>& members) const {
+  [[nodiscard]] double error_with_K(const EffectSet& best, const Names& members) const {
     std::vector<int> kept;
     std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
     std::ranges::sort(kept);
@@ -169,15 +196,41 @@ class Selector : Rounds {
     out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
 
-  /// Keeps only names without which the error of whole runs grows to more than 1/`error_share` times its value.
-  void keep_what_reduces_error(const EffectSet& best, std::vector<std::size_t>& named, double error_share, RefusalReason why_not) {
+  /// Returns the RMS error in K of left-out recordings with some names, by plain fits; ∞ if a fit fails.
+  [[nodiscard]] double left_out_error_with_K(const EffectSet& best, const Names& names) const {
+    return estimation::left_out_error_K(fit_with(best, names, setup_.plain()), input_.runs, setup_.plain());
+  }
+
+  /// Evidence alone is not sufficient for two models. A calibrated one leaves some unknown heat even in the runs it was fitted to. If the
+  /// motor has more bodies than the model, an effect may imitate them; the names of bodies stay.
+  void keep_what_helps(const EffectSet& best, Names& named) {
+    const auto has_body = [&](std::size_t m) { return std::ranges::find(bodies_, best.members[m]) != bodies_.end(); };
+    if (input_.usual.flux_W > 0.0) {
+      keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
+                              [&](const Names& names) { return error_with_K(best, names); });
+    }
+    if (std::ranges::any_of(named, has_body) && estimation::can_leave_out(input_.model, input_.runs)) {
+      keep_what_reduces_error(
+          best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
+          [&](const Names& names) { return left_out_error_with_K(best, names); }, has_body);
+    }
+  }
+
+  /// Keeps only names without which the error grows to more than 1/`error_share` times its value, and those for which `stays` is true.
+  void keep_what_reduces_error(
+      const EffectSet& best, Names& named, double error_share, RefusalReason why_not,
+      const std::function<double(const Names&)>& error_K_with,
+      const std::function<bool(std::size_t)>& stays = [](std::size_t) { return false; }) {
     // The name with the weakest evidence is examined first.
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
-    double error_K = named.empty() ? 0.0 : error_with_K(best, named);
+    double error_K = std::ranges::all_of(named, stays) ? 0.0 : error_K_with(named);
     for (std::size_t i = named.size(); i-- > 0;) {
-      std::vector<std::size_t> others = named;
+      if (stays(named[i])) {
+        continue;
+      }
+      Names others = named;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      const double without_K = error_with_K(best, others);
+      const double without_K = error_K_with(others);
       if (!(error_K < error_share * without_K)) {
         refuse({.id = id_of(best.members[named[i]]), .reason = why_not});
         named = std::move(others);
@@ -186,13 +239,8 @@ class Selector : Rounds {
     }
   }
 
-  /// Evidence alone is not sufficient: a calibrated model leaves some unknown heat even in the runs it was fitted to.
-  void keep_what_helps(const EffectSet& best, std::vector<std::size_t>& named) {
-    keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs);
-  }
-
   /// Returns the named members and the changed parameters, ascending.
-  [[nodiscard]] std::vector<int> kept_members(const EffectSet& best, const std::vector<std::size_t>& named) const {
+  [[nodiscard]] std::vector<int> kept_members(const EffectSet& best, const Names& named) const {
     std::vector<int> kept;
     for (std::size_t m = 0; m < best.members.size(); ++m) {
       if (is_parameter(best.members[m]) || std::ranges::find(named, m) != named.end()) {
@@ -203,22 +251,20 @@ class Selector : Rounds {
   }
 
   /// Fits the model with the named effects and the changed parameters. The evidence is not finite if the fit fails.
-  [[nodiscard]] estimation::Posterior fit_with(const Judged& judged, const EffectSet& best, const std::vector<std::size_t>& named) const {
-    if (named.empty()) {
-      return out_.own;
-    }
+  [[nodiscard]] estimation::Posterior fit_with(const EffectSet& best, const Names& named,
+                                               const estimation::PosteriorOptions& options) const {
     const std::vector<int> kept = kept_members(best, named);
     const estimation::Model model = with_members(kept, search_->at_best(kept), ShapesAre::free);
-    return estimation::try_posterior_of(model, input_.runs, starts_of(model), setup_.around(judged.best_place));
+    return estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
   }
 
-  void build(const Judged& judged, const EffectSet& best, std::vector<std::size_t> named) {
+  void build(const Judged& judged, const EffectSet& best, Names named) {
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
     out_.after = out_.own;
     if (named.empty()) {
       return;
     }
-    estimation::Posterior fit = fit_with(judged, best, named);
+    estimation::Posterior fit = fit_with(best, named, setup_.around(judged.best_place));
     if (!std::isfinite(fit.evidence_nats)) {
       out_.is_unexplained = true;
       return;
@@ -231,7 +277,8 @@ class Selector : Rounds {
       build(judged, best, std::move(named));
       return;
     }
-    out_.after = to_predict(std::move(fit));
+    const bool decides = estimation::can_leave_out(fit.model, input_.runs);
+    out_.after = decides ? more_predictive(std::move(fit), input_.runs) : to_predict(std::move(fit));
     add_terms(best, named, kept_members(best, named));
   }
 
@@ -248,8 +295,7 @@ class Selector : Rounds {
   }
 
   /// Returns whether the fit sets the size of an effect to zero. Its evidence is then an error of the linearisation.
-  [[nodiscard]] bool is_zero(const estimation::Model& model, const EffectSet& best, const std::vector<std::size_t>& named,
-                             std::size_t m) const {
+  [[nodiscard]] bool is_zero(const estimation::Model& model, const EffectSet& best, const Names& named, std::size_t m) const {
     const std::map<int, std::string> names = instances(model, kept_members(best, named));
     const auto own = names.find(best.members[m]);
     if (own == names.end()) {
@@ -260,14 +306,14 @@ class Selector : Rounds {
     return model.low(size) == 0.0 && model.theta()[size] < kThere;
   }
 
-  void add_terms(const EffectSet& best, const std::vector<std::size_t>& named, const std::vector<int>& kept) {
+  void add_terms(const EffectSet& best, const Names& named, const std::vector<int>& kept) {
     std::map<int, std::string> names = instances(out_.after.model, kept);
     for (const std::size_t m : named) {
       const int member = best.members[m];
       AcceptedTerm term;
       term.candidate = candidates()[static_cast<std::size_t>(member)];
       term.effect_name = names.contains(member) ? names[member] : "";
-      term.probability = search_->family_probability(best, m);
+      term.probability = probability_of(best, m);
       term.loss_without_nats = search_->loss_without_nats(best, m);
       term.visibility_ratio = search_->visibility_ratio(member);
       for (const int other : search_->stand_ins(best, m, estimation::thresholds().distinct_nats)) {

@@ -59,7 +59,7 @@ struct AcceptedTerm {
   std::optional<Candidate> candidate;  ///< effect of the catalogue; empty for a curve
   std::optional<ScanResult> curve;     ///< curve of the scan; empty for an effect
   std::string effect_name;             ///< name of the instance in the network; empty for sensor errors and run deviations
-  double probability = 0.0;            ///< probability of its family
+  double probability = 0.0;            ///< probability of its family, and of what may replace it in the same runs
   double loss_without_nats = 0.0;      ///< loss of ln P without its family
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;  ///< ids of effects, or names of signals, that explain the runs almost as well

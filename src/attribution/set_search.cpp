@@ -200,12 +200,13 @@ int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
   return rank;
 }
 
-double SetSearch::family_probability(const EffectSet& set, std::size_t place) const {
+double SetSearch::family_probability(const EffectSet& set, std::size_t place, const std::vector<int>& others) const {
   const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
   const int least = rank_in_family(set, place);
   double sum = 0.0;
   for (const EffectSet& each : sets_) {
-    sum += count_of(each, family) >= least ? each.probability : 0.0;
+    const bool has_other = std::ranges::any_of(others, [&](int other) { return std::ranges::binary_search(each.members, other); });
+    sum += has_other || count_of(each, family) >= least ? each.probability : 0.0;
   }
   return sum;
 }

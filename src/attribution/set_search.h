@@ -48,8 +48,8 @@ class SetSearch {
   /// Returns all evaluated sets, best first.
   [[nodiscard]] const std::vector<EffectSet>& sets() const { return sets_; }
   /// Ranks the members of the set within their family, the most certain first. Returns the probability of all sets that have at least as
-  /// many members of the family as the rank of the member at `place`.
-  [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place) const;
+  /// many members of the family as the rank of the member at `place`, or one of `others`, which may replace it.
+  [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place, const std::vector<int>& others = {}) const;
   /// Returns ln P of `set` minus that of the best set with fewer members of this family; 0 if there is none.
   [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place) const;
   /// Returns the ln evidence of the candidate alone minus that of the empty set, without priors.

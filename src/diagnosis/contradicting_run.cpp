@@ -10,25 +10,17 @@
 namespace heatsoak::diagnosis {
 namespace {
 
-/// Smallest error of a run that contradicts the others; smaller ones are expected of an incomplete model.
+/// Smallest error of a run that contradicts the others, and largest error of the others. Between models that are incomplete by more, runs
+/// with different loads contradict each other although nothing was changed.
 constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// Smallest ratio of the error of a run, predicted with the parameters of the others, to the errors of both fits: 7 to 14 if a sensor was
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
-/// Returns whether the model has an effect or a deviation of this run alone. The other runs cannot determine its size, so that they predict
-/// the run badly although nothing contradicts them.
-bool has_own_effect(const estimation::Model& model, const estimation::MeasuredRun& run) {
-  const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
-  return std::ranges::any_of(model.conditional, is_met) || std::ranges::any_of(model.deviations, is_met);
-}
-
-/// Returns whether the other runs are followed clearly worse by the fit to all runs than without this one, which gave `without_K`. The
-/// effect of a run then stands for something that its law does not describe, such as a moved sensor.
-bool spoils(const estimation::Posterior& together, const std::vector<estimation::MeasuredRun>& others,
-            const estimation::Errors& without_K) {
-  return estimation::rms_K(estimation::open_loop_errors(together.model, others, {})) >
-         estimation::thresholds().clearly_other_ratio * estimation::rms_K(without_K);
+/// Returns whether a fit to all runs follows these runs clearly worse than `usual_K`. An effect that the fit contains then stands for
+/// something that its law does not describe, such as a moved sensor.
+bool spoils(const estimation::Posterior& together, const std::vector<estimation::MeasuredRun>& runs, double usual_K) {
+  return estimation::rms_K(estimation::open_loop_errors(together.model, runs, {})) > estimation::thresholds().clearly_other_ratio * usual_K;
 }
 
 }  // namespace
@@ -65,8 +57,14 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
     }
     const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
     const estimation::Errors rest_K = estimation::open_loop_errors(rest.model, others.runs, {});
-    const bool has_effect = std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return has_own_effect(model, run); });
-    if (has_effect && !spoils(together, others.runs, rest_K)) {
+    const double usual_K = estimation::rms_K(rest_K);
+    if (usual_K > kContradicts_K) {
+      continue;
+    }
+    const bool has_effect =
+        std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return estimation::has_own_effect(model, run); });
+    if (has_effect && !spoils(together, others.runs, usual_K) &&
+        !spoils(together, own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
       continue;
     }
     for (const auto& [signal, error] : estimation::open_loop_errors(rest.model, own.runs, others.runs)) {

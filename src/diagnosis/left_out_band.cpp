@@ -43,16 +43,8 @@ std::optional<Diagnosis> without(const std::string& recording, const Diagnosis& 
 std::vector<estimation::MeasuredRun> runs_of(const std::string& recording, const Diagnosis& diagnosis) {
   std::vector<estimation::MeasuredRun> own;
   for (std::size_t r = 0; r < diagnosis.runs.size(); ++r) {
-    if (estimation::recording_of(diagnosis.runs[r]) != recording) {
-      continue;
-    }
-    own.push_back(diagnosis.runs[r]);
-    Eigen::MatrixXd& measured_C = own.back().measured_C;
-    const Eigen::VectorXd& weight = diagnosis.selection.weights[r];
-    for (Eigen::Index row = 0; row < weight.size(); ++row) {
-      if (!(weight[row] > 0.0)) {
-        measured_C(row / measured_C.cols(), row % measured_C.cols()) = std::nan("");
-      }
+    if (estimation::recording_of(diagnosis.runs[r]) == recording) {
+      own.push_back(estimation::without_rejected(diagnosis.runs[r], diagnosis.selection.weights[r]));
     }
   }
   return own;

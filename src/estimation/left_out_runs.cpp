@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <set>
+#include <string>
 
+#include "base/parallel.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/thresholds.h"
 
@@ -77,12 +82,76 @@ bool is_confirmed(const Eigen::VectorXd& gain_nats) {
 
 Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }
 
+MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight) {
+  for (Eigen::Index row = 0; row < weight.size(); ++row) {
+    if (!(weight[row] > 0.0)) {
+      run.measured_C(row / run.measured_C.cols(), row % run.measured_C.cols()) = std::nan("");
+    }
+  }
+  return run;
+}
+
+bool has_own_effect(const Model& model, const MeasuredRun& run) {
+  const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
+  return std::ranges::any_of(model.conditional, is_met) || std::ranges::any_of(model.deviations, is_met);
+}
+
+bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {
+  constexpr std::size_t kFewest = 3;
+  std::set<std::string> recordings;
+  for (const MeasuredRun& run : runs) {
+    if (!has_own_effect(model, run)) {
+      recordings.insert(recording_of(run));
+    }
+  }
+  return recordings.size() >= kFewest;
+}
+
+double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) {
+  if (!std::isfinite(fit.evidence_nats)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  std::vector<MeasuredRun> accepted = runs;
+  for (std::size_t r = 0; r < runs.size() && !options.weights.empty(); ++r) {
+    accepted[r] = without_rejected(std::move(accepted[r]), options.weights[r]);
+  }
+  std::map<std::string, double> squares_K2;
+  for (const MeasuredRun& run : runs) {
+    if (!has_own_effect(fit.model, run)) {
+      squares_K2[recording_of(run)] = std::numeric_limits<double>::infinity();
+    }
+  }
+  base::in_parallel(squares_K2.size(), 0, [&](std::size_t i) {
+    auto& [recording, square_K2] = *std::next(squares_K2.begin(), static_cast<std::ptrdiff_t>(i));
+    const auto is_own = [&](const MeasuredRun& run) { return recording_of(run) == recording; };
+    const SomeRuns others = some_of(accepted, fit.start_C, options, [&](const MeasuredRun& run) { return !is_own(run); });
+    const Posterior found = fit_of(fit.model, others);
+    if (std::isfinite(found.evidence_nats)) {
+      const SomeRuns own = some_of(accepted, fit.start_C, options, is_own);
+      square_K2 = std::pow(rms_K(open_loop_errors(found.model, own.runs, others.runs)), 2);
+    }
+  });
+  double sum_K2 = 0.0;
+  std::ranges::for_each(squares_K2, [&](const auto& each) { sum_K2 += each.second; });
+  return std::sqrt(sum_K2 / static_cast<double>(squares_K2.size()));
+}
+
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
   if (!std::isfinite(fit.evidence_nats)) {
     return fit;
   }
   Posterior other = try_posterior_of(fit.model, runs, fit.start_C, plain);
-  if (!std::isfinite(other.evidence_nats) || error_of_ends_K(fit, runs, own) <= error_of_ends_K(other, runs, plain)) {
+  if (!std::isfinite(other.evidence_nats)) {
+    return fit;
+  }
+  const auto keeps_own = [&] {
+    if (!can_leave_out(fit.model, runs)) {
+      return error_of_ends_K(fit, runs, own) <= error_of_ends_K(other, runs, plain);
+    }
+    // Where both predict about as well, the choice would follow the noise, and on average the plain fit is worse.
+    return left_out_error_K(other, runs, plain) >= thresholds().better_share * left_out_error_K(fit, runs, own);
+  };
+  if (keeps_own()) {
     return fit;
   }
   const Eigen::VectorXd moved = other.model.theta() - fit.model.theta();

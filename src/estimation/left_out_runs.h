@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "estimation/design.h"
@@ -64,9 +66,23 @@ SomeRuns some_of(const std::vector<MeasuredRun>& runs, const std::vector<std::ve
 /// Fits the model to these runs; the evidence is −∞ if the fit fails.
 Posterior fit_of(const Model& model, const SomeRuns& some);
 
-/// Returns `fit`, or a fit with the options `plain` that starts from it. Both are compared after a fit to the first two thirds of the runs:
-/// the one that predicts the last thirds better is returned. The difference of the two is added to the covariance. `own`: the options of
-/// `fit`. Weights and averaging are per run.
+/// Returns the run with NaN for the samples whose weight is 0. `weight` per sample; empty: all stay.
+MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight);
+
+/// True if the model has an effect or a deviation of the conditions of this run. Without the run, nothing may determine its size.
+bool has_own_effect(const Model& model, const MeasuredRun& run);
+
+/// True if at least three recordings have no effect of their own: fewer share too much of their loads to tell what predicts another one.
+bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
+
+/// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all
+/// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted. Samples
+/// with the weight 0 do not count. Call it only if can_leave_out().
+double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
+
+/// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts better: left-out recordings, by
+/// left_out_error_K() and clearly, or, with too few recordings, the last third of every run after a fit to the first two thirds. The
+/// difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per run.
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain);
 
 }  // namespace heatsoak::estimation

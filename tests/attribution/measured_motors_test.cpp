@@ -61,6 +61,25 @@ TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
   expect_follows_the_fan(all, diagnosed(all, 0.6));
 }
 
+/// Diagnoses from files that no calibration has fitted, with start values that differ by a factor of four.
+TEST(MeasuredMotors, a_fan_is_found_from_any_uncalibrated_file) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  Drone all = drone(*folder, true);
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    all.motor = guessed_otherwise(motor::read_motor(reports() / "uav_motor.toml"), {{"thermal_resistance_winding_stator", factor},
+                                                                                    {"thermal_resistance_stator_ambient", factor},
+                                                                                    {"thermal_time_constant_winding", factor},
+                                                                                    {"thermal_time_constant_stator", factor}});
+    for (const double cut : {0.5, 0.6, 0.65}) {
+      const Diagnosed found = diagnosed(all, cut);
+      const diagnosis::FoundEffect* const fan = effect_of(found.diagnosis, "airflow");
+      ASSERT_TRUE(fan) << factor << ", " << cut << account(found.diagnosis);
+      EXPECT_THAT(fan->condition, testing::ElementsAre(testing::Pair("run", "run4")));
+    }
+  }
+}
+
 /// The law that the whole set needs is hardly visible in this part. Without it the error on whole runs is six times as large.
 TEST(MeasuredMotors, a_hardly_visible_law_is_kept_if_no_parameter_could_replace_it) {
   SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");

@@ -134,6 +134,22 @@ TEST(SetSearch, IndistinguishableEffectsAreCertainAsAFamily) {
   EXPECT_EQ(found.stand_ins(best, 0, 5.0), std::vector<int>{best.members.front() == 0 ? 1 : 0});
 }
 
+/// Two identical columns of different families: neither is certain, but one of them acts.
+TEST(SetSearch, OneOfTwoThatMayReplaceEachOtherIsCertain) {
+  Problem one = problem(5, 1.0);
+  one.candidates.col(1) = one.candidates.col(0);
+  std::vector<CandidateRule> rules;
+  for (const char* const id : {"a", "b", "c", "d"}) {
+    rules.push_back({true, -4.5, id, id, {}, 1.0});
+  }
+  const SelectionRules defaults;
+  const SetSearch found({reduced_of(one)}, rules, defaults);
+  const EffectSet& best = found.sets().front();
+  ASSERT_EQ(best.members.size(), 1U);
+  EXPECT_LT(found.family_probability(best, 0), 0.6);
+  EXPECT_GT(found.family_probability(best, 0, found.stand_ins(best, 0, 5.0)), 0.99);
+}
+
 /// The linear evidence of the best set was too high. The set whose non-linear fit confirms its evidence becomes the best. Sets without a
 /// fit get the same correction.
 TEST(SetSearch, FitsDecideAmongTheBestSets) {

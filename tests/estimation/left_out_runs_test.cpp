@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include "estimation/model_along_run.h"
+#include "runs_for_tests.h"
 
 namespace heatsoak::estimation {
 namespace {
@@ -59,6 +64,67 @@ TEST(LeftOutNats, PartsOfOneRecordingAreLeftOutTogether) {
   ASSERT_EQ(sums.size(), 2U);
   EXPECT_EQ(sums[0].square(0, 0), 3.0);
   EXPECT_EQ(sums[1].square(0, 0), 4.0);
+}
+
+/// Runs of one motor, a model with the true parameters, and a fit to the runs.
+struct FittedRuns {
+  TwoNodeTruth truth;
+  std::vector<MeasuredRun> runs;
+  Posterior fit;
+  PosteriorOptions options;
+
+  explicit FittedRuns(std::size_t count) {
+    for (std::size_t r = 0; r < count; ++r) {
+      runs.push_back(generated_run(truth, {.flux_rms_W = 0.0, .outlier_share = 0.0}, 1, r + 1));
+      runs.back().conditions["run"] = runs.back().name = "run" + std::to_string(r + 1);
+    }
+    const Model model = two_node_model(truth, 1.0);
+    options = least_squares_options(model, 8);
+    std::vector<std::vector<double>> start_C;
+    for (const MeasuredRun& run : runs) {
+      start_C.push_back(measured_start_C(model.network, run));
+    }
+    fit = posterior_of(model, runs, start_C, options);
+  }
+};
+
+TEST(LeftOutErrors, OfAModelThatHoldsAreTheNoise) {
+  const FittedRuns fitted(3);
+  const double error_K = left_out_error_K(fitted.fit, fitted.runs, fitted.options);
+  EXPECT_NEAR(error_K, fitted.runs.front().sensors.front().noise_K, 0.3 * fitted.runs.front().sensors.front().noise_K);
+}
+
+TEST(LeftOutErrors, ARunThatContradictsTheOthersRaisesThem) {
+  FittedRuns fitted(3);
+  const double before_K = left_out_error_K(fitted.fit, fitted.runs, fitted.options);
+  fitted.runs[1].measured_C.array() +=
+      5.0 * fitted.runs[1].measured_C.array().square() / fitted.runs[1].measured_C.array().square().maxCoeff();
+  EXPECT_GT(left_out_error_K(fitted.fit, fitted.runs, fitted.options), 3.0 * before_K);
+}
+
+TEST(LeftOutErrors, NeedThreeRecordingsWithoutAnEffectOfTheirOwn) {
+  const FittedRuns two(2);
+  EXPECT_FALSE(can_leave_out(two.fit.model, two.runs));
+  FittedRuns fitted(3);
+  EXPECT_TRUE(can_leave_out(fitted.fit.model, fitted.runs));
+  RunDeviation deviation;
+  deviation.condition = {{"run", "run2"}};
+  fitted.fit.model.deviations.push_back(deviation);
+  EXPECT_TRUE(has_own_effect(fitted.fit.model, fitted.runs[1]));
+  EXPECT_FALSE(has_own_effect(fitted.fit.model, fitted.runs[0]));
+  EXPECT_FALSE(can_leave_out(fitted.fit.model, fitted.runs));
+}
+
+TEST(LeftOutErrors, RejectedSamplesDoNotCount) {
+  FittedRuns fitted(2);
+  MeasuredRun wrong = fitted.runs[0];
+  wrong.measured_C(3, 1) += 40.0;
+  Eigen::VectorXd weight = Eigen::VectorXd::Ones(wrong.measured_C.size());
+  weight[3 * wrong.measured_C.cols() + 1] = 0.0;
+  const MeasuredRun kept = without_rejected(wrong, weight);
+  EXPECT_TRUE(std::isnan(kept.measured_C(3, 1)));
+  EXPECT_EQ(kept.measured_C(3, 0), wrong.measured_C(3, 0));
+  EXPECT_EQ(without_rejected(wrong, {}).measured_C(3, 1), wrong.measured_C(3, 1));
 }
 
 }  // namespace
