@@ -245,6 +245,9 @@ FirstFit first_fit(const Model& model, const std::vector<MeasuredRun>& runs, con
   setup.mean_heat_W = usual_heat_W(model, runs, start_C);
   setup.material_W = material_heat_W(paths, thresholds().material_K);
   setup.grid = flux_grid(setup.material_W, travel_K(runs), model.flux_nodes.size(), model.least_flux_W);
+  if (can_leave_out(model, runs)) {
+    setup.grid.align();
+  }
   base::in_parallel(starts.size(), 0, [&](std::size_t i) {
     starts[i] = posterior_of(std::move(starts[i].model), runs, std::move(starts[i].start_C), setup.plain());
   });

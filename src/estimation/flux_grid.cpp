@@ -10,6 +10,11 @@
 namespace heatsoak::estimation {
 namespace {
 
+/// Ratio of neighbouring RMS values.
+constexpr double kStep_ratio = 2.25;
+/// Largest RMS value of a grid, in units of the heat that matters.
+constexpr double kLargest_ratio = 8.0;
+
 /// Returns the steady temperature rise of the warmest node in K/W, as a mean over the runs. The heat enters the flux node with the smallest
 /// such rise, the outermost body.
 double steady_rise_K_per_W(const std::vector<LinearisedRun>& runs) {
@@ -73,8 +78,17 @@ bool FluxGrid::is_largest(const FluxPlace& place) const {
                              [&](int strength) { return rms_W[static_cast<std::size_t>(strength)] == rms_W.back(); });
 }
 
+void FluxGrid::align() {
+  constexpr int kPoints = 8;
+  const auto nearest = [](double heat_W) { return static_cast<int>(std::lround(std::log(heat_W) / std::log(kStep_ratio))); };
+  const int top = nearest(rms_W.back() / kLargest_ratio) + 2;
+  rms_W.clear();
+  for (int power = top - kPoints + 1; power <= top; ++power) {
+    rms_W.push_back(std::pow(kStep_ratio, power));
+  }
+}
+
 void FluxGrid::reach(double most_W) {
-  constexpr double kStep_ratio = 2.25;
   while (kStep_ratio * rms_W.back() < most_W) {
     rms_W.push_back(kStep_ratio * rms_W.back());
   }
@@ -118,7 +132,7 @@ std::vector<FluxPlace> FluxGrid::star(const FluxPlace& place) const {
 FluxGrid flux_grid(double material_W, double travel_K, std::size_t fluxes, std::vector<double> least_W) {
   FluxGrid grid;
   grid.fluxes = fluxes;
-  for (const double share : {0.02, 0.12, 0.3, 0.7, 1.6, 3.6, 8.0}) {
+  for (const double share : {0.02, 0.12, 0.3, 0.7, 1.6, 3.6, kLargest_ratio}) {
     grid.rms_W.push_back(share * material_W);
   }
   for (const double share : {0.0, 0.003, 0.01, 0.03}) {
