@@ -343,10 +343,6 @@ void Rounds::note_sight() {
   out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
 }
 
-estimation::Posterior Rounds::to_predict(estimation::Posterior fit) const {
-  return fit.flux.drift_K > 0.0 ? more_predictive(std::move(fit), input_.runs) : fit;
-}
-
 estimation::Posterior Rounds::more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const {
   const estimation::PosteriorOptions whitened = setup_.with(fit.flux);
   return estimation::more_predictive(std::move(fit), runs, whitened, setup_.plain());

@@ -66,9 +66,6 @@ class Rounds {
   void note_sight();
   /// Returns `fit` or plain least squares of the free runs, by the rule of estimation::more_predictive().
   [[nodiscard]] estimation::Posterior more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const;
-  /// Sensor drift means that the network lacks bodies, and whitened residuals may then not give the most predictive parameters. Returns
-  /// more_predictive() for such a fit, otherwise `fit`.
-  [[nodiscard]] estimation::Posterior to_predict(estimation::Posterior fit) const;
   /// Fits the model without effects: once with the file's priors (`before`), once with wider priors for the contradicted parameters
   /// (`own`).
   void own_parameters(const Judged& judged);

@@ -179,7 +179,9 @@ class Selector : Rounds {
     const SetSearch::AtBest at = search_->at_best(kept);
     const estimation::Model model = with_members(kept, at, ShapesAre::held);
     const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(best_place_));
-    const estimation::Posterior fit = to_predict(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
+    estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
+    // Sensor drift means that the network lacks bodies. Whitened residuals may then not give the most predictive parameters.
+    fit = fit.flux.drift_K > 0.0 ? more_predictive(std::move(fit), input_.runs) : std::move(fit);
     return std::isfinite(fit.evidence_nats) ? free_run_error_K(fit.model) : std::numeric_limits<double>::infinity();
   }
 
@@ -277,8 +279,8 @@ class Selector : Rounds {
       build(judged, best, std::move(named));
       return;
     }
-    const bool decides = estimation::can_leave_out(fit.model, input_.runs);
-    out_.after = decides ? more_predictive(std::move(fit), input_.runs) : to_predict(std::move(fit));
+    const bool decides = fit.flux.drift_K > 0.0 || estimation::can_leave_out(fit.model, input_.runs);
+    out_.after = decides ? more_predictive(std::move(fit), input_.runs) : std::move(fit);
     add_terms(best, named, kept_members(best, named));
   }
 
@@ -329,7 +331,8 @@ class Selector : Rounds {
     }
   }
 
-  /// Adds the curve to the answer, and to the model if that can contain it: a motor has no law over the time since the start of a log.
+  /// Adds the curve to the answer, and to the model if that can contain it (a motor has no law over the time since the start of a log) and
+  /// then predicts left-out recordings better.
   void add_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& regressor = out_.regressors[static_cast<std::size_t>(curve.term.regressor)];
     AcceptedTerm term;
@@ -338,9 +341,14 @@ class Selector : Rounds {
       std::vector<estimation::MeasuredRun> runs = input_.runs;
       estimation::set_columns(runs, curved->columns);
       estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, setup_.around(judged.best_place));
-      term.effect_name = fit.model.network.effects().back().name;
       // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
-      out_.after = out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
+      const bool decides = estimation::can_leave_out(fit.model, runs);
+      fit = decides || out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
+      const auto error_K = [&](const auto& each) { return estimation::left_out_error_K(each, runs, setup_.plain()); };
+      if (!decides || error_K(fit) < error_K(out_.after)) {
+        term.effect_name = fit.model.network.effects().back().name;
+        out_.after = std::move(fit);
+      }
     }
     term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;

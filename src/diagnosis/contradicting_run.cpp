@@ -17,6 +17,9 @@ constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
+/// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
+constexpr std::ptrdiff_t kMostOwnEffects = 2;
+
 /// Returns whether a fit to all runs follows these runs clearly worse than `usual_K`. An effect that the fit contains then stands for
 /// something that its law does not describe, such as a moved sensor.
 bool spoils(const estimation::Posterior& together, const std::vector<estimation::MeasuredRun>& runs, double usual_K) {
@@ -61,9 +64,9 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
     if (usual_K > kContradicts_K) {
       continue;
     }
-    const bool has_effect =
-        std::ranges::any_of(own.runs, [&](const estimation::MeasuredRun& run) { return estimation::has_own_effect(model, run); });
-    if (has_effect && !spoils(together, others.runs, usual_K) &&
+    std::ptrdiff_t effects = 0;
+    std::ranges::for_each(own.runs, [&](const auto& run) { effects = std::max(effects, estimation::own_effect_count(model, run)); });
+    if (effects > 0 && effects <= kMostOwnEffects && !spoils(together, others.runs, usual_K) &&
         !spoils(together, own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
       continue;
     }

@@ -91,16 +91,16 @@ MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight) {
   return run;
 }
 
-bool has_own_effect(const Model& model, const MeasuredRun& run) {
+std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run) {
   const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
-  return std::ranges::any_of(model.conditional, is_met) || std::ranges::any_of(model.deviations, is_met);
+  return std::ranges::count_if(model.conditional, is_met) + std::ranges::count_if(model.deviations, is_met);
 }
 
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {
   constexpr std::size_t kFewest = 3;
   std::set<std::string> recordings;
   for (const MeasuredRun& run : runs) {
-    if (!has_own_effect(model, run)) {
+    if (own_effect_count(model, run) == 0) {
       recordings.insert(recording_of(run));
     }
   }
@@ -117,7 +117,7 @@ double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& ru
   }
   std::map<std::string, double> squares_K2;
   for (const MeasuredRun& run : runs) {
-    if (!has_own_effect(fit.model, run)) {
+    if (own_effect_count(fit.model, run) == 0) {
       squares_K2[recording_of(run)] = std::numeric_limits<double>::infinity();
     }
   }

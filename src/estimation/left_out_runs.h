@@ -69,10 +69,10 @@ Posterior fit_of(const Model& model, const SomeRuns& some);
 /// Returns the run with NaN for the samples whose weight is 0. `weight` per sample; empty: all stay.
 MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight);
 
-/// True if the model has an effect or a deviation of the conditions of this run. Without the run, nothing may determine its size.
-bool has_own_effect(const Model& model, const MeasuredRun& run);
+/// Returns the number of effects and deviations of the conditions of this run. Without the run, nothing may determine their sizes.
+std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run);
 
-/// True if at least three recordings have no effect of their own: fewer share too much of their loads to tell what predicts another one.
+/// True if at least three recordings have no effect of their own: fewer have too few different loads to show what predicts another one.
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all

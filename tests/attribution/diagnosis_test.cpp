@@ -222,6 +222,17 @@ TEST(Examination, HeatOverTheTimeOfARunIsReportedBesideASensorError) {
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
 
+/// The exponent of a law differs between motors. A curve over the current that corrects it is no further effect.
+TEST(Examination, ALawOfAnotherShapeIsOneEffect) {
+  Missing missing;
+  missing.heat.emplace_back([](const Moment& m, PerPart& q) { q[slot] += 0.012 * std::pow(std::abs(m.in.current_A), 3); });
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
+    const Answer answer = examine(sealed(missing, seed));
+    claim.expect(answer.named == std::vector<std::string>{"saturation"}, account(answer));
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
+}
+
 /// Effect of one run, and the heat that causes it.
 struct ChangeInOneRun {
   std::string id;

@@ -110,8 +110,8 @@ TEST(LeftOutErrors, NeedThreeRecordingsWithoutAnEffectOfTheirOwn) {
   RunDeviation deviation;
   deviation.condition = {{"run", "run2"}};
   fitted.fit.model.deviations.push_back(deviation);
-  EXPECT_TRUE(has_own_effect(fitted.fit.model, fitted.runs[1]));
-  EXPECT_FALSE(has_own_effect(fitted.fit.model, fitted.runs[0]));
+  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs[1]), 1);
+  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs[0]), 0);
   EXPECT_FALSE(can_leave_out(fitted.fit.model, fitted.runs));
 }
 
