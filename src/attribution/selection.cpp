@@ -203,7 +203,7 @@ class Selector : Rounds {
     return estimation::left_out_error_K(fit_with(best, names, setup_.plain()), input_.runs, setup_.plain());
   }
 
-  /// Evidence alone is not sufficient for two models. A calibrated one leaves some unknown heat even in the runs it was fitted to. If the
+  /// Evidence alone is not sufficient in two cases. A calibrated model leaves unknown heat even in the runs it was fitted to. If the
   /// motor has more bodies than the model, an effect may imitate them; the names of bodies stay.
   void keep_what_helps(const EffectSet& best, Names& named) {
     const auto has_body = [&](std::size_t m) { return std::ranges::find(bodies_, best.members[m]) != bodies_.end(); };

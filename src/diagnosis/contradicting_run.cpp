@@ -10,8 +10,8 @@
 namespace heatsoak::diagnosis {
 namespace {
 
-/// Smallest error of a run that contradicts the others, and largest error of the others. Between models that are incomplete by more, runs
-/// with different loads contradict each other although nothing was changed.
+/// Smallest error of a run that contradicts the others, and largest error of the others. If the model is wrong by more, runs with
+/// different loads contradict each other although nothing was changed.
 constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// Smallest ratio of the error of a run, predicted with the parameters of the others, to the errors of both fits: 7 to 14 if a sensor was
 /// moved, at most 4 otherwise (18 synthetic motors).

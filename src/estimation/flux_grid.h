@@ -31,7 +31,7 @@ struct FluxGrid {
   /// Extends the RMS values up to about `most_W`, and lowers larger ones to it.
   void reach(double most_W);
   /// Replaces the RMS values by powers of one ratio, up to about the largest. The points then hardly depend on the start values of the
-  /// model, and neither does the answer. For runs of at least three recordings; short logs of one motor lost a name on this grid.
+  /// model, and neither does the answer. Only for three recordings or more: from one short log, a correct name was lost.
   void align();
   /// Returns points spread over the whole grid, so that a search does not stop at one local optimum.
   [[nodiscard]] std::vector<FluxPlace> all_over() const;

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -44,6 +43,17 @@ double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& r
     }
   }
   return std::sqrt(sum_K2 / std::max(1.0, count));
+}
+
+/// Returns the names of the recordings in which no effect of the model is limited to some runs.
+std::vector<std::string> without_own_effect(const Model& model, const std::vector<MeasuredRun>& runs) {
+  std::set<std::string> names;
+  for (const MeasuredRun& run : runs) {
+    if (own_effect_count(model, run) == 0) {
+      names.insert(recording_of(run));
+    }
+  }
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
@@ -98,13 +108,7 @@ std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run) {
 
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {
   constexpr std::size_t kFewest = 3;
-  std::set<std::string> recordings;
-  for (const MeasuredRun& run : runs) {
-    if (own_effect_count(model, run) == 0) {
-      recordings.insert(recording_of(run));
-    }
-  }
-  return recordings.size() >= kFewest;
+  return without_own_effect(model, runs).size() >= kFewest;
 }
 
 double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) {
@@ -115,25 +119,18 @@ double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& ru
   for (std::size_t r = 0; r < runs.size() && !options.weights.empty(); ++r) {
     accepted[r] = without_rejected(std::move(accepted[r]), options.weights[r]);
   }
-  std::map<std::string, double> squares_K2;
-  for (const MeasuredRun& run : runs) {
-    if (own_effect_count(fit.model, run) == 0) {
-      squares_K2[recording_of(run)] = std::numeric_limits<double>::infinity();
-    }
-  }
-  base::in_parallel(squares_K2.size(), 0, [&](std::size_t i) {
-    auto& [recording, square_K2] = *std::next(squares_K2.begin(), static_cast<std::ptrdiff_t>(i));
-    const auto is_own = [&](const MeasuredRun& run) { return recording_of(run) == recording; };
+  const std::vector<std::string> recordings = without_own_effect(fit.model, runs);
+  std::vector<double> squares_K2(recordings.size(), std::numeric_limits<double>::infinity());
+  base::in_parallel(recordings.size(), 0, [&](std::size_t i) {
+    const auto is_own = [&](const MeasuredRun& run) { return recording_of(run) == recordings[i]; };
     const SomeRuns others = some_of(accepted, fit.start_C, options, [&](const MeasuredRun& run) { return !is_own(run); });
     const Posterior found = fit_of(fit.model, others);
     if (std::isfinite(found.evidence_nats)) {
       const SomeRuns own = some_of(accepted, fit.start_C, options, is_own);
-      square_K2 = std::pow(rms_K(open_loop_errors(found.model, own.runs, others.runs)), 2);
+      squares_K2[i] = std::pow(rms_K(open_loop_errors(found.model, own.runs, others.runs)), 2);
     }
   });
-  double sum_K2 = 0.0;
-  std::ranges::for_each(squares_K2, [&](const auto& each) { sum_K2 += each.second; });
-  return std::sqrt(sum_K2 / static_cast<double>(squares_K2.size()));
+  return std::sqrt(std::reduce(squares_K2.begin(), squares_K2.end()) / static_cast<double>(squares_K2.size()));
 }
 
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
@@ -148,7 +145,7 @@ Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, c
     if (!can_leave_out(fit.model, runs)) {
       return error_of_ends_K(fit, runs, own) <= error_of_ends_K(other, runs, plain);
     }
-    // Where both predict about as well, the choice would follow the noise, and on average the plain fit is worse.
+    // If the errors hardly differ, noise would decide, and the plain fit is worse on average.
     return left_out_error_K(other, runs, plain) >= thresholds().better_share * left_out_error_K(fit, runs, own);
   };
   if (keeps_own()) {

@@ -3,9 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "estimation/design.h"
@@ -80,9 +78,9 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 /// with the weight 0 do not count. Call it only if can_leave_out().
 double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
 
-/// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts better: left-out recordings, by
-/// left_out_error_K() and clearly, or, with too few recordings, the last third of every run after a fit to the first two thirds. The
-/// difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per run.
+/// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts better: left-out recordings with
+/// less than Thresholds::better_share of the error, or, with too few recordings, the last third of every run after a fit to the first two
+/// thirds. The difference of the two is added to the covariance. `own`: the options of `fit`. Weights and averaging are per run.
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain);
 
 }  // namespace heatsoak::estimation

@@ -16,7 +16,7 @@ struct Thresholds {
   double distinct_nats = 5.0;  ///< difference of ln P below which explanations cannot be distinguished
   double clearly_other_ratio = 1.54;  ///< ratio from which two errors, or two amounts of unknown heat, clearly differ
   double beside_unknown_share = 0.5;  ///< ratio of errors below which a name may stand beside material unknown heat
-  double better_share = 0.85;         ///< ratio of errors below which a name improves a good model
+  double better_share = 0.85;         ///< ratio of errors below which a name, or another fit, is better
   double same_signal_ratio = 0.9995;  ///< correlation above which two signals cannot be distinguished, and the first is used
   double least_seen_share = 0.5;      ///< smallest fraction of visible effects for the result "nothing missing"
   double well_known_ratio = 0.5;      ///< prior of a well-known parameter divided by that of a value on a data sheet
