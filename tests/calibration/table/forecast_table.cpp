@@ -62,6 +62,13 @@ std::vector<Case> all_cases() {
                            "ksu_propeller_bench",
                            {{spike + "Mega-1700_2020-01-27_105922.csv"}},
                            {{spike + "Mega-1700_2020-03-05_145559.csv"}}}};
+  constexpr double kFirstHour = 3600.0 / 7505.0;
+  cases.push_back({"Paderborn without torque and power, second hour",
+                   "calibration/lea_pmsm_52kw.toml",
+                   "reports/diagnosis/traction_motor/recording.map.toml",
+                   "paderborn_pmsm",
+                   {{"profile24_2.5s.csv", 0.0, kFirstHour}},
+                   {{"profile24_2.5s.csv", kFirstHour, 1.0}}});
   for (const double cut : {0.50, 0.60, 0.70, 0.75}) {
     cases.push_back({fmt::format("Paderborn, cut at {:.0f} %", 100.0 * cut),
                      "calibration/lea_pmsm_52kw.toml",
