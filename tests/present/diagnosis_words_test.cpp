@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "calibration/findings.h"
 #include "diagnosis/findings.h"
 #include "present/measured/diagnosis_output.h"
+#include "present/measured/diagnosis_reservations.h"
 
 namespace heatsoak::present {
 namespace {
@@ -90,6 +92,25 @@ TEST(WordsOfDiagnosis, Experiments) {
   experiment.most_rad_per_s = 150.0;
   EXPECT_EQ(experiment_words(experiment),
             "one speed at four currents; with at most 2 A and 150 rad/s the motor gets no hotter than in these runs");
+}
+
+/// A model that is better than the file, but worse than the same file refitted, is not recommended for that run.
+TEST(WordsOfDiagnosis, ErrorsOnHoldoutRunsAreComparedWithBothOtherFiles) {
+  const auto words = [](double before_K, double refitted_K, double after_K) {
+    diagnosis::HoldoutScore score;
+    score.runs_after.resize(1);
+    score.runs_after.front().name = "match_4";
+    score.errors = {{"match_4", "winding_C", {before_K, before_K}, {refitted_K, refitted_K}, {after_K, after_K}}};
+    diagnosis::Diagnosis diagnosis;
+    diagnosis.before_train["winding_C"].rmse_K = before_K;
+    diagnosis.after_train["winding_C"].rmse_K = std::min(before_K, after_K);
+    return reservations(diagnosis, score);
+  };
+  EXPECT_EQ(words(2.0, 0.5, 0.4), "");
+  EXPECT_THAT(words(2.0, 0.4, 0.9),
+              HasSubstr("In match_4, the model with only its own parameters refitted predicts better, 0.4 instead of 0.9 K"));
+  EXPECT_THAT(words(0.4, 2.0, 0.9), HasSubstr("Do not use the new model for runs like match_4"));
+  EXPECT_THAT(words(0.4, 0.3, 0.9), testing::Not(HasSubstr("refitted")));
 }
 
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/quantity.h"
+#include "present/measured/run_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -72,7 +73,7 @@ std::string verdict_of(const motor::Motor& motor, const calibration::Calibration
 report::Chart calibration_chart(const motor::Motor& motor, const calibration::Calibration& calibration) {
   std::vector<Traces> traces;
   for (const calibration::ErrorBeforeAfter& each : calibration.fit_error) {
-    const std::string what = each.signal.substr(0, each.signal.rfind('_'));
+    const std::string what = part_of(each.signal);
     Traces trace;
     trace.panel.title = title_of(calibration, each, what);
     trace.panel.y_label = what + " temperature / °C";

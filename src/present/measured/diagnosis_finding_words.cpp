@@ -29,7 +29,7 @@ std::string say(const diagnosis::ContradictingRun& run) {
       "{0} is left out, because it contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by "
       "{3} "
       "K, although {0} alone can be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}",
-      run.run, base::significant(run.usual_K, 2), run.signal.substr(0, run.signal.rfind('_')), base::significant(run.by_others_K, 2),
+      run.run, base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2),
       base::significant(run.alone_K, 2));
 }
 

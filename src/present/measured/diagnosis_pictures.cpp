@@ -10,6 +10,7 @@
 #include "estimation/interval.h"
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
+#include "present/measured/run_words.h"
 
 namespace heatsoak::present {
 namespace {
@@ -81,7 +82,7 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
       {}};
   const Compared models{input.model, diagnosis.selection.after.model};
   for (const auto& [signal, error] : diagnosis.before_train) {
-    report::ChartPanel panel{signal.substr(0, signal.rfind('_')), "measured − model / K", {}, {}, {}};
+    report::ChartPanel panel{part_of(signal), "measured − model / K", {}, {}, {}};
     Axis axis;
     add_residuals(signal, models, input.train, {}, axis, panel);
     add_residuals(signal, models, score.runs, input.train, axis, panel);

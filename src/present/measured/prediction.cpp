@@ -9,6 +9,7 @@
 #include "base/quantity.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/log.h"
+#include "present/measured/run_words.h"
 #include "recording/quantities.h"
 
 namespace heatsoak::present {
@@ -61,8 +62,6 @@ std::vector<Note> prediction_notes(const calibration::PredictionAnswer& answer, 
 
 std::string fitted_motor(const motor::Motor& motor) { return motor.fit ? motor.fit->motor : motor.id; }
 
-std::string signal_words(const calibration::PredictedSignal& signal) { return signal.signal.substr(0, signal.signal.rfind('_')); }
-
 std::string largest_error_words(const calibration::Prediction& prediction) {
   const calibration::PredictedSignal* worst = nullptr;
   const calibration::PredictedRun* worst_run = nullptr;
@@ -76,7 +75,7 @@ std::string largest_error_words(const calibration::Prediction& prediction) {
   }
   return worst == nullptr ? ""
                           : fmt::format("the largest error is {} K rms, of the {} in {}", base::significant(worst->rmse_K, 2),
-                                        signal_words(*worst), worst_run->name);
+                                        part_of(worst->signal), worst_run->name);
 }
 
 /// Names the signal that its band contains least, if that is less than half of what a correct band contains; else empty.
@@ -89,7 +88,7 @@ std::string poor_band_words(const calibration::Prediction& prediction) {
       if (each.samples > 0 && each.coverage_share < least_share) {
         least_share = each.coverage_share;
         words = fmt::format("Do not rely on the band: of the {} in {}, only {:.0f} % of the samples lie within the {} band.",
-                            signal_words(each), run.name, 100.0 * each.coverage_share, base::level_text(base::kBand_share));
+                            part_of(each.signal), run.name, 100.0 * each.coverage_share, base::level_text(base::kBand_share));
       }
     }
   }
@@ -111,7 +110,7 @@ Document prediction_document(const motor::Motor& motor, const calibration::Predi
     for (const calibration::PredictedSignal& each : run.signals) {
       const bool is_scored = each.samples > 0;
       table.rows.push_back({{run.name},
-                            {signal_words(each)},
+                            {part_of(each.signal)},
                             {is_scored ? base::significant(each.rmse_K, 2) : "–"},
                             {is_scored ? base::significant(each.max_abs_K, 2) : "–"},
                             {is_scored ? fmt::format("{:.0f}", 100.0 * each.coverage_share) : "–"},

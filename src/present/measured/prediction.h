@@ -11,9 +11,6 @@
 
 namespace heatsoak::present {
 
-/// Returns the name of a predicted signal without its unit.
-std::string signal_words(const calibration::PredictedSignal& signal);
-
 /// Returns the id of the motor: a model names the motor that it was fitted from, not its own file.
 std::string fitted_motor(const motor::Motor& motor);
 

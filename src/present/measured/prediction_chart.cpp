@@ -5,6 +5,7 @@
 #include "base/confidence.h"
 #include "base/quantity.h"
 #include "present/measured/prediction.h"
+#include "present/measured/run_words.h"
 
 namespace heatsoak::present {
 
@@ -22,9 +23,9 @@ report::Chart prediction_chart(const motor::Motor& motor, const calibration::Pre
     }
     for (const calibration::PredictedSignal& each : run.signals) {
       report::ChartPanel panel;
-      panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, signal_words(each),
+      panel.title = fmt::format("{}, {}: {} K rms, {:.0f} % within the band", run.name, part_of(each.signal),
                                 base::significant(each.rmse_K, 2), 100.0 * each.coverage_share);
-      panel.y_label = signal_words(each) + " temperature / °C";
+      panel.y_label = part_of(each.signal) + " temperature / °C";
       panel.bands = {
           {.name = base::level_text(base::kBand_share) + " band", .x = time_min, .low = each.low_C, .high = each.high_C, .color_index = 1}};
       panel.curves = {{.name = "measured", .x = time_min, .y = each.measured_C, .color_index = 4, .dots = true},

@@ -59,6 +59,8 @@ std::string say(const estimation::ColumnBlank& of) {
 
 }  // namespace
 
+std::string part_of(const std::string& signal) { return signal.substr(0, signal.rfind('_')); }
+
 std::string words_of(const estimation::RunNote& note) {
   return std::visit([](const auto& each) { return say(each); }, note);
 }

@@ -9,6 +9,9 @@
 
 namespace heatsoak::present {
 
+/// Returns the part that a signal belongs to: "winding" for "winding_C".
+std::string part_of(const std::string& signal);
+
 /// Returns the note as one sentence.
 std::string words_of(const estimation::RunNote& note);
 /// Temperatures may be wrong after a warning.
