@@ -226,9 +226,7 @@ Eigen::Index sensor_of(const estimation::MeasuredRun& run, std::string_view sign
   return std::ranges::find(run.sensors, signal, &estimation::Sensor::signal) - run.sensors.begin();
 }
 
-bool is_measured(const std::vector<estimation::MeasuredRun>& runs, std::string_view signal) {
-  return std::ranges::all_of(runs, [&](const auto& run) { return sensor_of(run, signal) < std::ssize(run.sensors); });
-}
+bool has_sensor(const estimation::MeasuredRun& run, std::string_view signal) { return sensor_of(run, signal) < std::ssize(run.sensors); }
 
 /// Network with all candidates added at size 0. It behaves like the original network, but provides their derivatives.
 struct Extended {
@@ -300,7 +298,7 @@ CandidateList candidates_for(const estimation::Model& model, const std::vector<e
   add_conditional_candidates(model, runs, size, list);
   for (const motor::SensorEffectType& type : motor::all_sensor_effects()) {
     const bool is_there = std::ranges::find(model.sensors, &type, &estimation::SensorTerm::type) != model.sensors.end();
-    if (!is_there && is_measured(runs, type.signal)) {
+    if (!is_there && std::ranges::any_of(runs, [&](const auto& run) { return has_sensor(run, type.signal); })) {
       list.candidates.push_back({.sensor_type = &type, .id = std::string(type.name), .parameters = {type.typical_size}});
     }
   }
@@ -346,7 +344,7 @@ estimation::Columns candidate_columns(const std::vector<Candidate>& candidates, 
   columns.rightCols(bodies) = by_parameter.rightCols(bodies) / kHardly_share;
   for (std::size_t j = 0; j < candidates.size(); ++j) {
     const Candidate& candidate = candidates[j];
-    if (!candidate.sensor_type) {
+    if (!candidate.sensor_type || !has_sensor(run, candidate.sensor_type->signal)) {
       continue;
     }
     const Eigen::Index sensor = sensor_of(run, candidate.sensor_type->signal);

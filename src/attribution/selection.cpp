@@ -331,8 +331,7 @@ class Selector : Rounds {
     }
   }
 
-  /// Adds the curve to the answer, and to the model if that can contain it (a motor has no law over the time since the start of a log) and
-  /// then predicts left-out recordings better.
+  /// Adds the curve to the answer, and to the model if that can contain it (a motor has no law over the time since the start of a log).
   void add_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& regressor = out_.regressors[static_cast<std::size_t>(curve.term.regressor)];
     AcceptedTerm term;
@@ -342,13 +341,10 @@ class Selector : Rounds {
       estimation::set_columns(runs, curved->columns);
       estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, setup_.around(judged.best_place));
       // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
-      const bool decides = estimation::can_leave_out(fit.model, runs);
-      fit = decides || out_.is_material() ? more_predictive(std::move(fit), runs) : std::move(fit);
-      const auto error_K = [&](const auto& each) { return estimation::left_out_error_K(each, runs, setup_.plain()); };
-      if (!decides || error_K(fit) < error_K(out_.after)) {
-        term.effect_name = fit.model.network.effects().back().name;
-        out_.after = std::move(fit);
-      }
+      const bool decides = estimation::can_leave_out(fit.model, runs) || out_.is_material();
+      fit = decides ? more_predictive(std::move(fit), runs) : std::move(fit);
+      term.effect_name = fit.model.network.effects().back().name;
+      out_.after = std::move(fit);
     }
     term.loss_without_nats = curve.gain_nats;
     term.probability = 1.0;

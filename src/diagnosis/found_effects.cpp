@@ -1,8 +1,8 @@
 #include "diagnosis/found_effects.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <limits>
 
 #include "attribution/terms.h"
 #include "diagnosis/heat_of_effects.h"
@@ -22,6 +22,7 @@ class EffectReport {
     effect.probability = term.probability;
     effect.gain_nats = term.loss_without_nats;
     effect.delta_bic = -2.0 * term.loss_without_nats;
+    effect.p_value = p_of(term.loss_without_nats);
     effect.visibility_ratio = term.visibility_ratio;
     effect.confusable_with = term.confusable_with;
     if (term.candidate && term.candidate->sensor_type) {
@@ -79,7 +80,6 @@ class EffectReport {
                          value + estimation::kInterval_sd * sd};
     drop_interval_at_bound(own, size);
     effect.parameters.push_back(std::move(size));
-    effect.p_value = p_of(value, sd);
   }
 
   void report_deviation(const attribution::Candidate& candidate, FoundEffect& effect) const {
@@ -98,8 +98,10 @@ class EffectReport {
     effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;
   }
 
-  static double p_of(double value, double sd) {
-    return sd > 0.0 ? 2.0 * boost::math::cdf(boost::math::complement(boost::math::normal(), std::min(37.0, std::abs(value) / sd))) : 1.0;
+  /// p-value of a likelihood ratio with one degree of freedom (Wilks 1938). The evidence has a penalty for the size, so the p-value is too
+  /// large rather than too small.
+  static double p_of(double gain_nats) {
+    return std::max(std::erfc(std::sqrt(std::max(0.0, gain_nats))), std::numeric_limits<double>::min());
   }
 
   void drop_interval_at_bound(Eigen::Index coordinate, FittedParameter& parameter) const {
@@ -134,11 +136,6 @@ class EffectReport {
           const double sd = std::sqrt(after().covariance(i, i));
           parameter.low = std::max(model.value_of(i, theta[i] - estimation::kInterval_sd * sd), spec.range.low);
           parameter.high = std::min(model.value_of(i, theta[i] + estimation::kInterval_sd * sd), spec.range.high);
-          // The positions of a curve's knots are no evidence for the curve, so only its values count.
-          const std::optional<int> size = in_place.type->candidacy.size_parameter;
-          if (size ? static_cast<std::size_t>(*size) == p : spec.range.low == 0.0) {
-            effect.p_value = std::min(effect.p_value, p_of(theta[i], sd));
-          }
           drop_interval_at_bound(i, parameter);
         }
       }

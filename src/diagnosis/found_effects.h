@@ -32,7 +32,7 @@ struct FoundEffect {
   double probability = 0.0;                      ///< posterior probability of the effect's family
   double gain_nats = 0.0;                        ///< loss of ln P without the effect's family
   double delta_bic = 0.0;                        ///< −2 · gain_nats
-  double p_value = 1.0;                          ///< p-value of size 0; for a curve, of its most significant knot
+  double p_value = 1.0;                          ///< p-value of the model without the effect's family
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;  ///< effects confounded with it in these runs
   std::string confounded_with;               ///< effects confounded with it in general, from the catalogue

@@ -113,6 +113,34 @@ TEST(WordsOfDiagnosis, ErrorsOnHoldoutRunsAreComparedWithBothOtherFiles) {
   EXPECT_THAT(words(0.4, 0.3, 0.9), testing::Not(HasSubstr("refitted")));
 }
 
+/// A single signal may grow although the run as a whole is predicted better.
+TEST(WordsOfDiagnosis, GrowthOfOneSignalIsReported) {
+  diagnosis::HoldoutScore score;
+  score.runs_after.resize(1);
+  score.runs_after.front().name = "match_4";
+  score.errors = {{"match_4", "winding_C", {3.0, 3.0}, {2.0, 2.0}, {0.5, 0.5}},
+                  {"match_4", "stator_C", {1.0, 1.0}, {0.3, 0.3}, {0.5, 0.5}}};
+  EXPECT_EQ(reservations({}, score),
+            " The error of the stator alone grows in match_4, from 0.3 K with only the model's own parameters refitted to 0.5 K.");
+  score.errors.back().before.rmse_K = 0.2;
+  EXPECT_EQ(reservations({}, score), " The error of the stator alone grows in match_4, from 0.2 K to 0.5 K.");
+}
+
+/// Evidence for an effect does not determine its size, such as that of a body that is tightly coupled.
+TEST(WordsOfDiagnosis, IntervalsFromZeroAreNoSizes) {
+  diagnosis::DiagnosisAnswer answer;
+  diagnosis::FoundEffect effect;
+  effect.id = "third_node";
+  effect.node = "stator";
+  effect.gain_nats = 125.0;
+  effect.parameters = {{"conductance", "W/K", 0.138, 0.0, 1.35}};
+  answer.diagnosis.effects = {effect};
+  const auto words = [&] { return testing::PrintToString(diagnosis_words(answer)); };
+  EXPECT_THAT(words(), HasSubstr("0 to 1.35), so that the runs show the effect but hardly its size"));
+  answer.diagnosis.effects.front().parameters.front().low = 0.05;
+  EXPECT_THAT(words(), testing::Not(HasSubstr("hardly its size")));
+}
+
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   diagnosis::Diagnosis found;
   diagnosis::FoundEffect deviation;

@@ -11,36 +11,35 @@
 namespace heatsoak::present {
 namespace {
 
-/// Warns of signals that the new file predicts worse than the original one.
-std::string growth_of_signals(const diagnosis::HoldoutScore& score, const std::string& run) {
-  std::string text;
-  for (const diagnosis::HoldoutError& each : score.errors) {
-    if (each.run == run && diagnosis::is_plainly_worse(each.after.rmse_K, each.before.rmse_K)) {
-      text += fmt::format(" The error of the {} alone grows in {}, from {} to {} K.", part_of(each.signal), run,
-                          base::significant(each.before.rmse_K, 2), base::significant(each.after.rmse_K, 2));
-    }
-  }
-  return text;
-}
-
-/// Warns of the hold-out runs that the new file predicts worse than the original one or than the refitted one.
+/// Warns of the hold-out runs that the new file predicts worse than the original one or than the refitted one, and of single signals in
+/// other runs.
 std::string growth_in_holdout_runs(const diagnosis::HoldoutScore& score) {
   using Error = diagnosis::HoldoutError;
+  const auto is_worse = [&](const std::string& run, estimation::ErrorOfSignal Error::*than) {
+    return diagnosis::is_plainly_worse(diagnosis::rms_of_run_K(score, run, &Error::after), diagnosis::rms_of_run_K(score, run, than));
+  };
   std::string text;
   for (const calibration::PredictedRun& run : score.runs_after) {
-    const double before_K = diagnosis::rms_of_run_K(score, run.name, &Error::before);
-    const double refitted_K = diagnosis::rms_of_run_K(score, run.name, &Error::refitted);
-    const double after_K = diagnosis::rms_of_run_K(score, run.name, &Error::after);
-    if (diagnosis::is_plainly_worse(after_K, before_K)) {
+    if (is_worse(run.name, &Error::before)) {
       text += fmt::format(" Do not use the new model for runs like {}: the error in this hold-out run grows.", run.name);
       continue;
     }
-    text += growth_of_signals(score, run.name);
-    if (diagnosis::is_plainly_worse(after_K, refitted_K)) {
+    if (is_worse(run.name, &Error::refitted)) {
       text += fmt::format(
           " In {}, the model with only its own parameters refitted predicts better, {} instead of {} K RMS: for such runs, use the file of "
           "heatsoak calibrate --innovations.",
-          run.name, base::significant(refitted_K, 2), base::significant(after_K, 2));
+          run.name, base::significant(diagnosis::rms_of_run_K(score, run.name, &Error::refitted), 2),
+          base::significant(diagnosis::rms_of_run_K(score, run.name, &Error::after), 2));
+      continue;
+    }
+    for (const Error& each : score.errors) {
+      const bool is_best_before = each.before.rmse_K < each.refitted.rmse_K;
+      const double best_K = std::min(each.before.rmse_K, each.refitted.rmse_K);
+      if (each.run == run.name && diagnosis::is_plainly_worse(each.after.rmse_K, best_K)) {
+        text += fmt::format(" The error of the {} alone grows in {}, from {} K{} to {} K.", part_of(each.signal), run.name,
+                            base::significant(best_K, 2), is_best_before ? "" : " with only the model's own parameters refitted",
+                            base::significant(each.after.rmse_K, 2));
+      }
     }
   }
   return text;

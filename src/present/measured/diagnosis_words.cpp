@@ -75,6 +75,9 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
     if (parameter.low < parameter.high) {
       text += fmt::format("; {} {:.3g}{}{} ({}: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
                           parameter.unit, base::level_text(base::kInterval_share), parameter.low, parameter.high);
+      if (parameter.low <= 0.0 && parameter.high >= 0.0) {
+        text += ", so that the runs show the effect but hardly its size";
+      }
       break;
     }
     if (parameter.is_at_bound) {
