@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/confidence.h"
 #include "base/copper.h"
 #include "input/document.h"
 #include "motor/motor_effects.h"
@@ -326,6 +327,24 @@ Motor read_motor(const std::filesystem::path& path, base::Diagnostics& diagnosti
   return motor;
 }
 
+namespace {
+
+void scale_heat(MotorValues& values, double heat_ratio) {
+  values.terminal_resistance_ohm *= heat_ratio;
+  values.no_load_current_A *= heat_ratio;
+}
+
+}  // namespace
+
+std::optional<Motor> at_upper_band(const Motor& motor) {
+  if (!motor.fit || !motor.fit->band) {
+    return std::nullopt;
+  }
+  Motor upper = motor;
+  scale_heat(upper.nominal, drawn_heat_factor(*motor.fit->band, 0.5 * (1.0 + base::kBand_share)));
+  return upper;
+}
+
 MotorSample nominal_sample(const Motor& motor) {
   MotorSample sample{motor.nominal, {}};
   for (const MotorEffect& effect : motor.effects) {
@@ -361,9 +380,7 @@ MotorSample draw_sample(const Motor& motor, base::Random& random) {
     }
   }
   if (motor.fit && motor.fit->band) {
-    const double heat_ratio = drawn_heat_factor(*motor.fit->band, random.uniform());
-    sample.values.terminal_resistance_ohm *= heat_ratio;
-    sample.values.no_load_current_A *= heat_ratio;
+    scale_heat(sample.values, drawn_heat_factor(*motor.fit->band, random.uniform()));
   }
   return sample;
 }

@@ -146,6 +146,8 @@ struct MotorSample {
 MotorSample nominal_sample(const Motor& motor);
 /// Returns a random sample of all values with a spread.
 MotorSample draw_sample(const Motor& motor, base::Random& random);
+/// Returns the motor with all heat at the upper end of its forecast band (95th percentile); nullopt without a band.
+std::optional<Motor> at_upper_band(const Motor& motor);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances
 /// and time constants are measured and no thermal value is an estimate, else `mixed`. Otherwise `datasheet` if every thermal value is

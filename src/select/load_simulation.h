@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "select/evaluate.h"
 #include "select/trace.h"
@@ -22,8 +23,9 @@ struct LoadSimulation {
   motor::Motor motor;
   duty::Duty duty;
   double duration_s = 0.0;
-  MotorEvaluation result;  ///< evaluation of the wheel whose winding gets hottest
-  Trace trace;             ///< trace of the same wheel
+  MotorEvaluation result;  ///< evaluation of the wheel whose winding gets hottest; marginal if only `upper_winding_peak_C` is too hot
+  std::optional<double> upper_winding_peak_C = {};  ///< peak with motor::at_upper_band(); empty without a band
+  Trace trace;                                      ///< trace of the same wheel
 };
 
 /// Throws Failure (bad_input) if the trace would have more rows than memory allows.

@@ -26,9 +26,18 @@ void check_table(const MatchJob& job) {
   }
 }
 
+MatchRunOptions run_options(const MatchJob& job, const robot::Robot& robot, duty::Planner planner, base::Progress progress) {
+  MatchRunOptions options;
+  options.planner = planner;
+  options.ambient_C = job.duty.ambient_C.value;
+  options.drive = job.is_sensing_ideal ? ideal_drive() : real_drive(robot, job.seed);
+  options.progress = std::move(progress);
+  return options;
+}
+
 DrivenMatch drive_once(const MatchJob& job, const robot::Robot& robot, const Game& game, const robot_core::Config& core,
-                       duty::Planner planner, base::Progress progress) {
-  DrivenMatch driven{.planner = planner, .run = {}, .csv = {}, .rows = {}};
+                       const MatchRunOptions& options) {
+  DrivenMatch driven{.planner = options.planner, .run = {}, .csv = {}, .rows = {}};
   const double ambient_C = job.duty.ambient_C.value;
   const auto wheels = static_cast<int>(robot.wheels.axis_rad.size());
   const MatchAdditions added = additions_of(job.motor);
@@ -37,11 +46,6 @@ DrivenMatch drive_once(const MatchJob& job, const robot::Robot& robot, const Gam
   }
   MatchRows csv(job.every_s, ambient_C, added, [&](const MatchRow& row) { append_csv(driven.csv, row, wheels, ambient_C, added); });
   MatchRows kept(kMatchRow_s, ambient_C, {}, [&](const MatchRow& row) { driven.rows.push_back(row); });
-  MatchRunOptions options;
-  options.planner = planner;
-  options.ambient_C = ambient_C;
-  options.drive = job.is_sensing_ideal ? ideal_drive() : real_drive(robot, job.seed);
-  options.progress = std::move(progress);
   driven.run = run_match(game, robot, job.motor, core, options, [&](const LoopMoment& moment) {
     if (job.with_table) {
       csv.take(moment);
@@ -62,10 +66,19 @@ select::Verdict verdict_of(const DriveScore& score, const motor::MotorValues& li
   return drive_problem(score) ? select::Verdict::infeasible : select::Verdict::pass;
 }
 
+/// Drives the game once more with the motor at the upper end of its forecast band. The firmware has the nominal motor.
+void add_upper(const MatchJob& job, const motor::Motor& upper, const robot::Robot& robot, const Game& game, const robot_core::Config& core,
+               const MatchRunOptions& options, DrivenMatch& driven) {
+  driven.upper = run_match(game, robot, upper, core, options).score;
+  if (driven.verdict == select::Verdict::pass && verdict_of(*driven.upper, job.motor.nominal) == select::Verdict::fail) {
+    driven.verdict = select::Verdict::marginal;
+  }
+}
+
 }  // namespace
 
 const DrivenMatch& MatchSimulation::deciding() const {
-  for (const select::Verdict verdict : {select::Verdict::fail, select::Verdict::infeasible}) {
+  for (const select::Verdict verdict : {select::Verdict::fail, select::Verdict::infeasible, select::Verdict::marginal}) {
     const auto found = std::ranges::find(runs, verdict, &DrivenMatch::verdict);
     if (found != runs.end()) {
       return *found;
@@ -90,7 +103,8 @@ MatchSimulation simulate_match(const MatchJob& job, const base::JobProgress& pro
                          .is_sensing_ideal = job.is_sensing_ideal,
                          .runs = {}};
   std::vector<base::JobPhase> phases{{kGame, kPlayedGame_s}};
-  for (std::size_t i = 0; i < job.planners.size(); ++i) {
+  const std::optional<motor::Motor> upper = motor::at_upper_band(job.motor);
+  for (std::size_t i = 0; i < job.planners.size() * (upper ? 2 : 1); ++i) {
     phases.push_back({kDriving, kDrive_s});
   }
   if (job.guard != GuardUse::off) {
@@ -104,8 +118,14 @@ MatchSimulation simulate_match(const MatchJob& job, const base::JobProgress& pro
   const Game game = play_game(inputs, answer.robot, job.seed);
   for (const duty::Planner planner : job.planners) {
     const GuardedCore core(answer.robot, job.motor, job.guard, answer.guard);
-    answer.runs.push_back(drive_once(job, answer.robot, game, core.config(), planner, progress.begin(kDriving)));
+    answer.runs.push_back(
+        drive_once(job, answer.robot, game, core.config(), run_options(job, answer.robot, planner, progress.begin(kDriving))));
     answer.runs.back().verdict = verdict_of(answer.runs.back().run.score, job.motor.nominal);
+    if (upper) {
+      const GuardedCore again(answer.robot, job.motor, job.guard, answer.guard);
+      add_upper(job, *upper, answer.robot, game, again.config(), run_options(job, answer.robot, planner, progress.begin(kDriving)),
+                answer.runs.back());
+    }
   }
   return answer;
 }

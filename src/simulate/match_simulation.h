@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ struct MatchJob {
 struct DrivenMatch {
   duty::Planner planner = duty::Planner::jerk_limited;
   MatchRun run;
-  select::Verdict verdict = select::Verdict::pass;  ///< fail: a limit is exceeded; infeasible: drive_problem()
+  /// fail: a limit is exceeded; infeasible: drive_problem(); marginal: a limit is exceeded only in `upper`
+  select::Verdict verdict = select::Verdict::pass;
+  std::optional<DriveScore> upper = {};  ///< the same game with motor::at_upper_band(); empty without a band
   std::string csv;
   std::vector<MatchRow> rows;  ///< one row every kMatchRow_s
 };
@@ -47,7 +50,7 @@ struct MatchSimulation {
   std::vector<DrivenMatch> runs;  ///< one for each planner
 
   /// Returns the run that decides the verdict: the first that fails (a limit exceeded), else the first that is infeasible (not driven),
-  /// else the first.
+  /// else the first that is marginal, else the first.
   [[nodiscard]] const DrivenMatch& deciding() const;
   /// Returns the verdict of deciding().
   [[nodiscard]] select::Verdict verdict() const;

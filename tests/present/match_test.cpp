@@ -97,6 +97,26 @@ TEST(LoadAnswer, says_first_that_mass_and_wheels_do_not_matter) {
   EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
 }
 
+// Without a forecast band the answer is that of the nominal motor alone.
+TEST(LoadAnswer, has_the_peak_at_the_upper_end_of_the_band) {
+  motor::Motor motor = ecx_32();
+  const auto answer = [&] {
+    return load_simulation_document(
+        select::simulate_load(
+            {.robot = twente(), .motor = motor, .duty = duty::read_duty(kSource / "duty_profiles/paper_intermittent.toml")}),
+        kGiven);
+  };
+  EXPECT_TRUE(answer().data["upper_winding_peak_C"].is_null());
+  motor.fit.emplace();
+  motor.fit->band = motor::ForecastBand{{0.0, 0.0}, 100.0, 0.1, 1.0};
+  motor.nominal.winding_limit_C = 170.0;  // nominal 162 °C
+  const Document document = answer();
+  EXPECT_NE(document.headline.front().words.find("may exceed a limit"), std::string::npos);
+  EXPECT_NE(document.headline.front().words.find("at the upper end of the 90 % forecast band"), std::string::npos);
+  EXPECT_EQ(document.data["verdict"], "marginal");
+  EXPECT_GT(document.data["upper_winding_peak_C"], 170.0);
+}
+
 TEST(MatchAnswer, an_exceeded_limit_decides_before_a_match_that_was_not_driven) {
   const simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::infeasible, 71.5),
                                                driven(duty::Planner::bang_bang, select::Verdict::fail, 173.5));

@@ -83,6 +83,24 @@ TEST(MatchSimulation, fails_over_the_limit_and_drives_the_same) {
   EXPECT_EQ(hot.runs.front().run.score.winding_peak_C, peak_C);
 }
 
+// The heat of a run is known to 10 % (one standard deviation). The firmware gets the nominal motor, so the drive stays nearly the same.
+TEST(MatchSimulation, is_marginal_if_only_the_upper_end_of_the_band_is_too_hot) {
+  MatchJob job = short_job();
+  EXPECT_FALSE(simulate_match(job).runs.front().upper);
+  job.motor.fit.emplace();
+  job.motor.fit->band = motor::ForecastBand{{0.0, 0.0}, 100.0, 0.1, 1.0};
+  const MatchSimulation cool = simulate_match(job);
+  EXPECT_EQ(cool.verdict(), select::Verdict::pass);
+  const double ambient_C = job.duty.ambient_C.value;
+  const double nominal_C = cool.runs.front().run.score.winding_peak_C;
+  const double upper_C = cool.runs.front().upper.value().winding_peak_C;
+  // e^(1.645 · 0.1) = 1.18; the resistance of the copper grows with its temperature.
+  EXPECT_GT(upper_C - ambient_C, 1.12 * (nominal_C - ambient_C));
+  EXPECT_LT(upper_C - ambient_C, 1.30 * (nominal_C - ambient_C));
+  job.motor.nominal.winding_limit_C = 0.5 * (nominal_C + upper_C);
+  EXPECT_EQ(simulate_match(job).verdict(), select::Verdict::marginal);
+}
+
 TEST(MatchSimulation, is_decided_by_the_worst_run) {
   using select::Verdict;
   const auto deciding = [](const std::vector<Verdict>& verdicts) {
@@ -97,6 +115,8 @@ TEST(MatchSimulation, is_decided_by_the_worst_run) {
   EXPECT_EQ(deciding({Verdict::pass, Verdict::fail}), 1);
   EXPECT_EQ(deciding({Verdict::infeasible, Verdict::fail}), 1);
   EXPECT_EQ(deciding({Verdict::pass, Verdict::infeasible}), 1);
+  EXPECT_EQ(deciding({Verdict::pass, Verdict::marginal}), 1);
+  EXPECT_EQ(deciding({Verdict::marginal, Verdict::infeasible}), 1);
 }
 
 TEST(MatchSimulation, refuses_one_table_for_two_planners_and_a_huge_one) {
