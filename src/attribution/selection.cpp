@@ -341,8 +341,9 @@ class Selector : Rounds {
       estimation::set_columns(runs, curved->columns);
       estimation::Posterior fit = estimation::posterior_of(*curved, runs, out_.after.start_C, setup_.around(judged.best_place));
       // With material unknown heat, whitened residuals determine the parameters less well than whole runs.
-      const bool decides = estimation::can_leave_out(fit.model, runs) || out_.is_material();
-      fit = decides ? more_predictive(std::move(fit), runs) : std::move(fit);
+      if (estimation::can_leave_out(fit.model, runs) || out_.is_material()) {
+        fit = more_predictive(std::move(fit), runs);
+      }
       term.effect_name = fit.model.network.effects().back().name;
       out_.after = std::move(fit);
     }

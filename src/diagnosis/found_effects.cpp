@@ -98,8 +98,8 @@ class EffectReport {
     effect.peak_W = std::abs(type.part_ratio(value)) * heat.peak_W;
   }
 
-  /// p-value of a likelihood ratio with one degree of freedom (Wilks 1938). The evidence has a penalty for the size, so the p-value is too
-  /// large rather than too small.
+  /// p-value of a likelihood ratio with one degree of freedom (Wilks 1938), from the evidence. It ignores that the effect was chosen
+  /// among many; the probability does not. Tiny values end at the smallest normal number.
   static double p_of(double gain_nats) {
     return std::max(std::erfc(std::sqrt(std::max(0.0, gain_nats))), std::numeric_limits<double>::min());
   }

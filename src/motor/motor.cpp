@@ -330,8 +330,8 @@ Motor read_motor(const std::filesystem::path& path, base::Diagnostics& diagnosti
 namespace {
 
 void scale_heat(MotorValues& values, double heat_ratio) {
-  values.terminal_resistance_ohm *= heat_ratio;
-  values.no_load_current_A *= heat_ratio;
+  values.thermal_resistance_winding_stator_K_per_W *= heat_ratio;
+  values.thermal_resistance_stator_ambient_K_per_W *= heat_ratio;
 }
 
 }  // namespace

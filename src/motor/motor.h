@@ -137,7 +137,8 @@ void refresh_values(Motor& motor);
 std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal);
 
 /// One sample of all uncertain values that temperatures depend on. Fitted values have the correlation of the fit. If the fit has a forecast
-/// band, terminal resistance and no-load current are multiplied by a common heat factor.
+/// band, both thermal resistances are multiplied by its drawn heat factor: with the same time constants, this heats as all losses times
+/// the factor do, and changes no voltage.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order
@@ -146,7 +147,7 @@ struct MotorSample {
 MotorSample nominal_sample(const Motor& motor);
 /// Returns a random sample of all values with a spread.
 MotorSample draw_sample(const Motor& motor, base::Random& random);
-/// Returns the motor with all heat at the upper end of its forecast band (95th percentile); nullopt without a band.
+/// Returns the motor with the heat factor of its forecast band at the 95th percentile, all other values nominal; nullopt without a band.
 std::optional<Motor> at_upper_band(const Motor& motor);
 
 /// Returns the quality of the data that determine temperatures. If a calibration wrote the file: `measured` if all four thermal resistances

@@ -136,9 +136,9 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
   }
 }
 
-/// Describes the peak at the upper end of the forecast band.
-std::string upper_words(double winding_peak_C) {
-  return fmt::format("; {:.1f} °C at the upper end of the {} forecast band", winding_peak_C, base::level_text(base::kBand_share));
+/// Describes the peak with the heat factor of the forecast band at its upper end.
+std::string upper_words(double peak_C) {
+  return fmt::format("{:.1f} °C with the losses at their {:.0f}th percentile", peak_C, 50.0 * (1.0 + base::kBand_share));
 }
 
 /// Returns the sentence about one planner: the verdict with its reason, then the hottest winding.
@@ -147,16 +147,20 @@ Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMat
   const motor::MotorValues& limits = answer.motor.nominal;
   const std::string winding =
       fmt::format("the hottest winding, of wheel {}, reaches {:.1f} °C (limit {:.0f} °C{})", score.hottest_wheel + 1, score.winding_peak_C,
-                  limits.winding_limit_C, driven.upper ? upper_words(driven.upper->winding_peak_C) : "");
-  const bool is_of_stator = driven.verdict == select::Verdict::fail && score.winding_peak_C <= limits.winding_limit_C;
+                  limits.winding_limit_C,
+                  driven.upper && driven.verdict != select::Verdict::infeasible ? "; " + upper_words(driven.upper->winding_peak_C) : "");
+  const double hottest_C = driven.verdict == select::Verdict::marginal ? driven.upper->winding_peak_C : score.winding_peak_C;
+  const bool is_of_stator =
+      (driven.verdict == select::Verdict::fail || driven.verdict == select::Verdict::marginal) && hottest_C <= limits.winding_limit_C;
   const std::string what = driven.verdict == select::Verdict::infeasible
                                ? "cannot drive this match: " + words_of(*simulate::drive_problem(score), score)
                            : driven.verdict == select::Verdict::fail     ? "exceeds a limit: "
-                           : driven.verdict == select::Verdict::marginal ? "may exceed a limit: "
+                           : driven.verdict == select::Verdict::marginal ? "may exceed a limit or miss the demand: "
                                                                          : "stays within its limits: ";
   const std::string peak = driven.verdict == select::Verdict::infeasible ? fmt::format(". It is not too hot: {}", winding)
                            : is_of_stator
-                               ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C)", score.stator_peak_C, *limits.stator_limit_C)
+                               ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C{})", score.stator_peak_C,
+                                             *limits.stator_limit_C, driven.upper ? "; " + upper_words(driven.upper->stator_peak_C) : "")
                                : winding;
   return {fmt::format("In this one game (seed {}) the nominal {} {}{}{}.", answer.seed, answer.motor.id,
                       answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "", what, peak),
@@ -183,8 +187,8 @@ void add_scope(Document& document, const GivenInputs& given, bool is_game) {
 }
 
 std::string_view verb_of(select::Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kVerbs{"stays within its limits on", "may exceed a limit on", "exceeds a limit on",
-                                                   "cannot drive"};
+  constexpr std::array<std::string_view, 4> kVerbs{"stays within its limits on", "may exceed a limit or miss the demand on",
+                                                   "exceeds a limit on", "cannot drive"};
   return kVerbs.at(static_cast<std::size_t>(verdict));
 }
 
@@ -238,15 +242,16 @@ Document match_document(const simulate::MatchSimulation& answer, const GivenInpu
 }
 
 Document load_simulation_document(const select::LoadSimulation& simulation, const GivenInputs& given) {
-  const auto& [robot, motor, duty, duration_s, result, upper_winding_peak_C, trace] = simulation;
+  const auto& [robot, motor, duty, duration_s, result, upper, trace] = simulation;
   Document document{
       .headline = {{fmt::format("In this one run the nominal {} {} {}: winding peak {:.1f} °C (limit {:.0f} °C{}).", motor.id,
                                 verb_of(result.verdict), load_words(duty), result.winding_peak_C.nominal, result.winding_limit_C,
-                                upper_winding_peak_C ? upper_words(*upper_winding_peak_C) : ""),
+                                upper ? "; " + upper_words(upper->winding_C) : ""),
                     tone_of(result.verdict)}},
-      .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C, rms current {:.2f} A, {} thermal data. The load is {}.",
+      .paragraphs = {fmt::format("{} on {} ({}, {}): stator peak {:.1f} °C{}, rms current {:.2f} A, {} thermal data. The load is {}.",
                                  robot.id, duty.id, duration_text(duration_s), result.wheel, result.stator_peak_C.nominal,
-                                 result.current_rms_A, result.data_quality, duty.origin)}};
+                                 upper ? fmt::format(" ({})", upper_words(upper->stator_C)) : "", result.current_rms_A, result.data_quality,
+                                 duty.origin)}};
   Table table{.title = "Mean heat into the nodes (positive: into)",
               .columns = {{"effect", "", 0, Alignment::left}, {"node", "", 0, Alignment::left}, {"heat", "W", 0}},
               .rows = {}};

@@ -21,6 +21,10 @@ Json guard_json(const simulate::MatchSimulation& match) {
           {"heat_reserve_ratio", guard.derating ? rounded(guard.derating->observer.heat_safety_factor(), 4) : Json()}};
 }
 
+Json upper_of(const simulate::DrivenMatch& driven, double simulate::DriveScore::*peak_C) {
+  return driven.upper ? rounded((*driven.upper).*peak_C, 3) : Json();
+}
+
 Json json(const simulate::DrivenMatch& driven) {
   const simulate::DriveScore& s = driven.run.score;
   Json limited;
@@ -58,6 +62,7 @@ Json json(const simulate::DrivenMatch& driven) {
               {"lowest_battery_V", rounded(s.lowest_battery_V, 3)},
               {"battery_empty_s", rounded(s.battery_empty_s, 3)},
               {"winding_peak_C", rounded(s.winding_peak_C, 3)},
+              {"upper_winding_peak_C", upper_of(driven, &simulate::DriveScore::winding_peak_C)},
               {"stator_peak_C", rounded(s.stator_peak_C, 3)},
               {"duel_copper_share", rounded(s.duel_copper_share, 4)},
               {"guard_limited_s", rounded(s.guard_limited_s, 3)},
@@ -107,7 +112,8 @@ Json match_json(const simulate::MatchSimulation& match) {
               {"duration_s", rounded(score.time_s, 3)},
               {"wheel", fmt::format("wheel {}", score.hottest_wheel + 1)},
               {"winding_peak_C", rounded(score.winding_peak_C, 3)},
-              {"upper_winding_peak_C", deciding.upper ? rounded(deciding.upper->winding_peak_C, 3) : Json()},
+              {"upper_winding_peak_C", upper_of(deciding, &simulate::DriveScore::winding_peak_C)},
+              {"upper_stator_peak_C", upper_of(deciding, &simulate::DriveScore::stator_peak_C)},
               {"stator_peak_C", rounded(score.stator_peak_C, 3)},
               {"winding_limit_C", rounded(match.motor.nominal.winding_limit_C, 2)},
               {"current_rms_A", rounded(score.current_rms_A, 4)},
@@ -131,7 +137,8 @@ Json load_simulation_json(const select::LoadSimulation& simulation) {
               {"duty_origin", simulation.duty.origin},
               {"wheel", result.wheel},
               {"winding_peak_C", rounded(result.winding_peak_C.nominal, 3)},
-              {"upper_winding_peak_C", rounded(simulation.upper_winding_peak_C, 3)},
+              {"upper_winding_peak_C", simulation.upper ? rounded(simulation.upper->winding_C, 3) : Json()},
+              {"upper_stator_peak_C", simulation.upper ? rounded(simulation.upper->stator_C, 3) : Json()},
               {"stator_peak_C", rounded(result.stator_peak_C.nominal, 3)},
               {"winding_limit_C", rounded(result.winding_limit_C, 2)},
               {"current_rms_A", rounded(result.current_rms_A, 4)},

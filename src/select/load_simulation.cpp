@@ -24,16 +24,16 @@ LoadSimulation simulate_load(const LoadJob& job) {
   MotorEvaluation result = evaluate(job.robot, job.duty, wheels, std::span(&job.motor, 1), nominal).front();
   const duty::WheelDemand& wheel = *std::ranges::find(wheels, result.wheel, &duty::WheelDemand::wheel);
   Trace trace = run_trace(job.robot, job.duty, wheel, job.motor, job.every_s);
-  std::optional<double> upper_winding_peak_C;
+  std::optional<UpperPeaks> peaks;
   if (const std::optional<motor::Motor> upper = motor::at_upper_band(job.motor)) {
     nominal.with_curves = false;
     const MotorEvaluation hot = evaluate(job.robot, job.duty, wheels, std::span(&*upper, 1), nominal).front();
-    upper_winding_peak_C = hot.winding_peak_C.nominal;
-    if (result.verdict == Verdict::pass && std::min(hot.margin_K, hot.stator_margin_K.value_or(hot.margin_K)) < 0.0) {
+    peaks = UpperPeaks{hot.winding_peak_C.nominal, hot.stator_peak_C.nominal};
+    if (result.verdict == Verdict::pass && hot.verdict != Verdict::pass) {
       result.verdict = Verdict::marginal;
     }
   }
-  return {job.robot, job.motor, job.duty, duration_s, std::move(result), upper_winding_peak_C, std::move(trace)};
+  return {job.robot, job.motor, job.duty, duration_s, std::move(result), peaks, std::move(trace)};
 }
 
 }  // namespace heatsoak::select

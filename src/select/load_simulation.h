@@ -18,14 +18,20 @@ struct LoadJob {
   bool with_curves = false;  ///< keep the temperatures over time in `result`
 };
 
+/// Peak temperatures with motor::at_upper_band().
+struct UpperPeaks {
+  double winding_C = 0.0;
+  double stator_C = 0.0;
+};
+
 struct LoadSimulation {
   robot::Robot robot;
   motor::Motor motor;
   duty::Duty duty;
   double duration_s = 0.0;
-  MotorEvaluation result;  ///< evaluation of the wheel whose winding gets hottest; marginal if only `upper_winding_peak_C` is too hot
-  std::optional<double> upper_winding_peak_C = {};  ///< peak with motor::at_upper_band(); empty without a band
-  Trace trace;                                      ///< trace of the same wheel
+  MotorEvaluation result;                ///< evaluation of the wheel whose winding gets hottest; marginal if it fails only in `upper`
+  std::optional<UpperPeaks> upper = {};  ///< empty without a forecast band
+  Trace trace;                           ///< trace of the same wheel
 };
 
 /// Throws Failure (bad_input) if the trace would have more rows than memory allows.

@@ -30,7 +30,7 @@ struct MatchJob {
 struct DrivenMatch {
   duty::Planner planner = duty::Planner::jerk_limited;
   MatchRun run;
-  /// fail: a limit is exceeded; infeasible: drive_problem(); marginal: a limit is exceeded only in `upper`
+  /// fail: a limit is exceeded; infeasible: drive_problem(); marginal: fail or infeasible only in `upper`
   select::Verdict verdict = select::Verdict::pass;
   std::optional<DriveScore> upper = {};  ///< the same game with motor::at_upper_band(); empty without a band
   std::string csv;

@@ -379,12 +379,19 @@ TEST(ForecastBand, WidensTheDrawsOfACalibratedMotor) {
   motor.fit.emplace();
   motor.fit->parameters = {"thermal_resistance_winding_stator"};
   motor.fit->correlation = motor::Correlation(std::size_t{1});
-  motor.fit->band = motor::ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
+  motor::Motor banded = motor;
+  banded.fit->band = motor::ForecastBand{{0.03, 0.0}, 100.0, 0.04, 2.0};
   constexpr int kDraws = 4000;
   double squares = 0.0;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     base::Random random(seed, 0);
-    squares += std::pow(std::log(motor::draw_sample(motor, random).values.terminal_resistance_ohm / sheet.truth.resistance_25C_ohm), 2);
+    base::Random again(seed, 0);
+    const motor::MotorValues without = motor::draw_sample(motor, random).values;
+    const motor::MotorValues with = motor::draw_sample(banded, again).values;
+    const double heat_ratio = with.thermal_resistance_stator_ambient_K_per_W / without.thermal_resistance_stator_ambient_K_per_W;
+    EXPECT_NEAR(with.thermal_resistance_winding_stator_K_per_W, heat_ratio * without.thermal_resistance_winding_stator_K_per_W, 1e-12);
+    EXPECT_EQ(with.terminal_resistance_ohm, without.terminal_resistance_ohm);
+    squares += std::pow(std::log(heat_ratio), 2);
   }
   EXPECT_NEAR(std::sqrt(squares / kDraws), 2.0 * 0.05, 0.005);
 }

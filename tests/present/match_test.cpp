@@ -97,6 +97,30 @@ TEST(LoadAnswer, says_first_that_mass_and_wheels_do_not_matter) {
   EXPECT_NE(by_urgency(document.notes).front().words.find("`heatsoak evaluate --robot"), std::string::npos);
 }
 
+TEST(MatchAnswer, names_the_part_that_only_the_upper_end_of_the_band_heats_too_much) {
+  simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::marginal, 141.5),
+                                         driven(duty::Planner::bang_bang, select::Verdict::marginal, 120.0));
+  match.motor.nominal.stator_limit_C = 90.0;
+  for (simulate::DrivenMatch& each : match.runs) {
+    each.run.score.stator_peak_C = 85.0;
+    each.upper = each.run.score;
+    each.upper->stator_peak_C = 95.0;
+  }
+  match.runs[0].upper->winding_peak_C = 160.0;
+  match.runs[1].upper->winding_peak_C = 130.0;
+  const Document document = match_document(match, kGiven);
+  EXPECT_NE(document.headline[0].words.find("may exceed a limit or miss the demand: the hottest winding, of wheel 1, reaches 141.5 °C "
+                                            "(limit 155 °C; 160.0 °C with the losses"),
+            std::string::npos)
+      << document.headline[0].words;
+  EXPECT_NE(document.headline[1].words.find(
+                "may exceed a limit or miss the demand: the stator reaches 85.0 °C (limit 90 °C; 95.0 °C with the losses"),
+            std::string::npos)
+      << document.headline[1].words;
+  EXPECT_EQ(document.data["upper_winding_peak_C"], 160.0);
+  EXPECT_EQ(document.data["planners"][1]["upper_winding_peak_C"], 130.0);
+}
+
 // Without a forecast band the answer is that of the nominal motor alone.
 TEST(LoadAnswer, has_the_peak_at_the_upper_end_of_the_band) {
   motor::Motor motor = ecx_32();
@@ -111,8 +135,8 @@ TEST(LoadAnswer, has_the_peak_at_the_upper_end_of_the_band) {
   motor.fit->band = motor::ForecastBand{{0.0, 0.0}, 100.0, 0.1, 1.0};
   motor.nominal.winding_limit_C = 170.0;  // nominal 162 °C
   const Document document = answer();
-  EXPECT_NE(document.headline.front().words.find("may exceed a limit"), std::string::npos);
-  EXPECT_NE(document.headline.front().words.find("at the upper end of the 90 % forecast band"), std::string::npos);
+  EXPECT_NE(document.headline.front().words.find("may exceed a limit or miss the demand on"), std::string::npos);
+  EXPECT_NE(document.headline.front().words.find("with the losses at their 95th percentile"), std::string::npos);
   EXPECT_EQ(document.data["verdict"], "marginal");
   EXPECT_GT(document.data["upper_winding_peak_C"], 170.0);
 }

@@ -97,6 +97,9 @@ TEST(MatchSimulation, is_marginal_if_only_the_upper_end_of_the_band_is_too_hot) 
   // e^(1.645 · 0.1) = 1.18; the resistance of the copper grows with its temperature.
   EXPECT_GT(upper_C - ambient_C, 1.12 * (nominal_C - ambient_C));
   EXPECT_LT(upper_C - ambient_C, 1.30 * (nominal_C - ambient_C));
+  // A loss has no influence on voltages: the drive is the same, up to the resistance of the warmer copper.
+  EXPECT_NEAR(cool.runs.front().upper->current_rms_A, cool.runs.front().run.score.current_rms_A,
+              1e-3 * cool.runs.front().run.score.current_rms_A);
   job.motor.nominal.winding_limit_C = 0.5 * (nominal_C + upper_C);
   EXPECT_EQ(simulate_match(job).verdict(), select::Verdict::marginal);
 }
