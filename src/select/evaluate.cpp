@@ -400,6 +400,10 @@ double nearest_margin_K(const MotorEvaluation& motor) {
   return motor.stator_limit_C ? std::min(of_winding_K, margin_K(*motor.stator_limit_C, motor.stator_peak_C)) : of_winding_K;
 }
 
+Verdict with_upper(Verdict nominal, Verdict upper) {
+  return nominal == Verdict::pass && upper != Verdict::pass ? Verdict::marginal : nominal;
+}
+
 std::string_view to_string(Verdict verdict) {
   constexpr std::array<std::string_view, 4> kNames{"pass", "marginal", "fail", "infeasible"};
   return kNames.at(static_cast<std::size_t>(verdict));

@@ -19,6 +19,8 @@ namespace heatsoak::select {
 enum class Verdict { pass, marginal, fail, infeasible };
 enum class LimitingFactor { none, winding_temperature, stator_temperature, voltage, current };
 std::string_view to_string(Verdict verdict);
+/// Returns the verdict of a nominal run, or marginal if it passes but `upper`, the same run with motor::at_upper_band(), does not.
+Verdict with_upper(Verdict nominal, Verdict upper);
 std::string_view to_string(LimitingFactor factor);
 
 /// A passing motor becomes marginal if the probability of exceeding a limit, or of missing the demand, is larger than this.

@@ -29,9 +29,7 @@ LoadSimulation simulate_load(const LoadJob& job) {
     nominal.with_curves = false;
     const MotorEvaluation hot = evaluate(job.robot, job.duty, wheels, std::span(&*upper, 1), nominal).front();
     peaks = UpperPeaks{hot.winding_peak_C.nominal, hot.stator_peak_C.nominal};
-    if (result.verdict == Verdict::pass && hot.verdict != Verdict::pass) {
-      result.verdict = Verdict::marginal;
-    }
+    result.verdict = with_upper(result.verdict, hot.verdict);
   }
   return {job.robot, job.motor, job.duty, duration_s, std::move(result), peaks, std::move(trace)};
 }

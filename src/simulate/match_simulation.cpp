@@ -70,9 +70,7 @@ select::Verdict verdict_of(const DriveScore& score, const motor::MotorValues& li
 void add_upper(const MatchJob& job, const motor::Motor& upper, const robot::Robot& robot, const Game& game, const robot_core::Config& core,
                const MatchRunOptions& options, DrivenMatch& driven) {
   driven.upper = run_match(game, robot, upper, core, options).score;
-  if (driven.verdict == select::Verdict::pass && verdict_of(*driven.upper, job.motor.nominal) != select::Verdict::pass) {
-    driven.verdict = select::Verdict::marginal;
-  }
+  driven.verdict = select::with_upper(driven.verdict, verdict_of(*driven.upper, job.motor.nominal));
 }
 
 }  // namespace
