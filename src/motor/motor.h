@@ -137,8 +137,8 @@ void refresh_values(Motor& motor);
 std::vector<SensorFault> faults_of(const Motor& motor, std::string_view signal);
 
 /// One sample of all uncertain values that temperatures depend on. Fitted values have the correlation of the fit. If the fit has a forecast
-/// band, both thermal resistances are multiplied by its drawn heat factor: with the same time constants, this heats as all losses times
-/// the factor do, and changes no voltage.
+/// band, both thermal resistances are multiplied by its drawn heat factor. The time constants stay, so temperatures change as with a factor
+/// on all heat, and voltages do not change.
 struct MotorSample {
   MotorValues values;
   std::vector<std::vector<double>> effect_parameters;  ///< per effect, in declared order

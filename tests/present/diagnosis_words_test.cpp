@@ -136,9 +136,9 @@ TEST(WordsOfDiagnosis, IntervalsFromZeroAreNoSizes) {
   effect.parameters = {{"conductance", "W/K", 0.138, 0.0, 1.35}};
   answer.diagnosis.effects = {effect};
   const auto words = [&] { return testing::PrintToString(diagnosis_words(answer)); };
-  EXPECT_THAT(words(), HasSubstr("0 to 1.35), so that the runs show the effect but hardly its size"));
+  EXPECT_THAT(words(), HasSubstr("0 to 1.35), which these runs hardly determine"));
   answer.diagnosis.effects.front().parameters.front().low = 0.05;
-  EXPECT_THAT(words(), testing::Not(HasSubstr("hardly its size")));
+  EXPECT_THAT(words(), testing::Not(HasSubstr("hardly determine")));
 }
 
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {

@@ -76,7 +76,7 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
       text += fmt::format("; {} {:.3g}{}{} ({}: {:.3g} to {:.3g})", parameter.name, parameter.value, parameter.unit.empty() ? "" : " ",
                           parameter.unit, base::level_text(base::kInterval_share), parameter.low, parameter.high);
       if (parameter.low <= 0.0 && parameter.high >= 0.0) {
-        text += ", so that the runs show the effect but hardly its size";
+        text += ", which these runs hardly determine";
       }
       break;
     }
