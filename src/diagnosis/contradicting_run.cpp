@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "estimation/free_run_errors.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/thresholds.h"
@@ -20,16 +21,89 @@ constexpr double kContradicts_ratio = 5.0;
 /// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
 constexpr std::ptrdiff_t kMostOwnEffects = 2;
 
-/// Returns whether a fit to all runs follows these runs clearly worse than `usual_K`. An effect that the fit contains then stands for
-/// something that its law does not describe, such as a moved sensor.
-bool spoils(const estimation::Posterior& together, const std::vector<estimation::MeasuredRun>& runs, double usual_K) {
-  return estimation::rms_K(estimation::open_loop_errors(together.model, runs, {})) > estimation::thresholds().clearly_other_ratio * usual_K;
-}
+double ratio(const ContradictingRun& each) { return each.by_others_K / std::max(each.alone_K, each.usual_K); }
+
+class Comparison {
+ public:
+  Comparison(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
+             const estimation::PosteriorOptions& options)
+      : fit_(fit), runs_(runs), options_(options) {
+    const auto has_own = [&](const estimation::MeasuredRun& run) { return estimation::own_effect_count(fit.model, run) > 0; };
+    if (std::ranges::any_of(runs, has_own)) {
+      together_ = fit_of_runs([](const estimation::MeasuredRun&) { return true; }).fit;
+    }
+  }
+
+  /// Returns the sensor at which the recording contradicts the others most.
+  [[nodiscard]] std::optional<ContradictingRun> of(const std::string& recording) const {
+    const auto is_own = [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; };
+    const Fitted rest = fit_of_runs([&](const estimation::MeasuredRun& run) { return !is_own(run); });
+    if (!std::isfinite(rest.fit.evidence_nats)) {
+      return std::nullopt;
+    }
+    const estimation::Errors rest_K = estimation::open_loop_errors(rest.fit.model, rest.of.runs, {});
+    const double usual_K = estimation::rms_K(rest_K);
+    const estimation::SomeRuns own = estimation::some_of(runs_, fit_, options_, is_own);
+    const estimation::Errors by_others_K = estimation::open_loop_errors(rest.fit.model, own.runs, rest.of.runs);
+    const auto is_far = [](const auto& error) { return error.second.rmse_K > kContradicts_K; };
+    if (usual_K > kContradicts_K || std::ranges::none_of(by_others_K, is_far)) {
+      return std::nullopt;
+    }
+    const estimation::Posterior alone = estimation::fit_of(own);
+    if (!std::isfinite(alone.evidence_nats)) {
+      return std::nullopt;
+    }
+    const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
+    if (is_explained(own.runs) && !spoils(rest.of.runs, usual_K) && !spoils(own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
+      return std::nullopt;
+    }
+    std::optional<ContradictingRun> worst;
+    for (const auto& [signal, error] : by_others_K) {
+      const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
+                                  rest_K.contains(signal) ? rest_K.at(signal).rmse_K : error.rmse_K};
+      if (each.by_others_K > kContradicts_K && ratio(each) > kContradicts_ratio && (!worst || ratio(each) > ratio(*worst))) {
+        worst = each;
+      }
+    }
+    return worst;
+  }
+
+ private:
+  struct Fitted {
+    estimation::SomeRuns of;
+    estimation::Posterior fit;
+  };
+
+  template <class Predicate>
+  [[nodiscard]] Fitted fit_of_runs(Predicate belongs) const {
+    Fitted fitted{estimation::some_of(runs_, fit_, options_, belongs), {}};
+    fitted.fit = estimation::fit_of(fitted.of);
+    return fitted;
+  }
+
+  /// True if the model contains a few effects of this recording alone.
+  [[nodiscard]] bool is_explained(const std::vector<estimation::MeasuredRun>& own) const {
+    std::ptrdiff_t effects = 0;
+    std::ranges::for_each(own, [&](const auto& run) { effects = std::max(effects, estimation::own_effect_count(fit_.model, run)); });
+    return effects > 0 && effects <= kMostOwnEffects;
+  }
+
+  /// Returns whether a fit to all runs follows these runs clearly worse than `usual_K`. An effect that the fit contains then stands for
+  /// something that its law does not describe, such as a moved sensor.
+  [[nodiscard]] bool spoils(const std::vector<estimation::MeasuredRun>& runs, double usual_K) const {
+    return std::isfinite(together_->evidence_nats) && estimation::rms_K(estimation::open_loop_errors(together_->model, runs, {})) >
+                                                          estimation::thresholds().clearly_other_ratio * usual_K;
+  }
+
+  const estimation::Posterior& fit_;
+  const std::vector<estimation::MeasuredRun>& runs_;
+  const estimation::PosteriorOptions& options_;
+  std::optional<estimation::Posterior> together_;  ///< fit to all runs; only if an effect belongs to some of them
+};
 
 }  // namespace
 
-std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs,
-                                                  const std::vector<std::vector<double>>& start_C,
+std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
                                                   const estimation::PosteriorOptions& options) {
   // Parts of one recording belong together: nobody moves a sensor during a gap of the log.
   std::vector<std::string> recordings;
@@ -39,48 +113,15 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
       recordings.push_back(name);
     }
   }
-  std::vector<ContradictingRun> found;
   if (recordings.size() < 3) {
     return std::nullopt;
   }
-  const estimation::Posterior together =
-      estimation::fit_of(model, estimation::some_of(runs, start_C, options, [](const estimation::MeasuredRun&) { return true; }));
-  if (!std::isfinite(together.evidence_nats)) {
-    return std::nullopt;
-  }
-  for (const std::string& recording : recordings) {
-    const estimation::SomeRuns own = estimation::some_of(
-        runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; });
-    const estimation::SomeRuns others = estimation::some_of(
-        runs, start_C, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) != recording; });
-    const estimation::Posterior alone = estimation::fit_of(model, own);
-    const estimation::Posterior rest = estimation::fit_of(model, others);
-    if (!std::isfinite(alone.evidence_nats) || !std::isfinite(rest.evidence_nats)) {
-      continue;
-    }
-    const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
-    const estimation::Errors rest_K = estimation::open_loop_errors(rest.model, others.runs, {});
-    const double usual_K = estimation::rms_K(rest_K);
-    if (usual_K > kContradicts_K) {
-      continue;
-    }
-    std::ptrdiff_t effects = 0;
-    std::ranges::for_each(own.runs, [&](const auto& run) { effects = std::max(effects, estimation::own_effect_count(model, run)); });
-    if (effects > 0 && effects <= kMostOwnEffects && !spoils(together, others.runs, usual_K) &&
-        !spoils(together, own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
-      continue;
-    }
-    for (const auto& [signal, error] : estimation::open_loop_errors(rest.model, own.runs, others.runs)) {
-      const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
-                                  rest_K.contains(signal) ? rest_K.at(signal).rmse_K : error.rmse_K};
-      if (each.by_others_K > kContradicts_K && each.by_others_K > kContradicts_ratio * std::max(each.alone_K, each.usual_K)) {
-        found.push_back(each);
-      }
-    }
-  }
-  const auto ratio = [](const ContradictingRun& each) { return each.by_others_K / std::max(each.alone_K, each.usual_K); };
-  const auto largest = std::ranges::max_element(found, {}, ratio);
-  return largest == found.end() ? std::nullopt : std::optional(*largest);
+  const Comparison comparison(fit, runs, options);
+  std::vector<std::optional<ContradictingRun>> found(recordings.size());
+  base::in_parallel(recordings.size(), 0, [&](std::size_t i) { found[i] = comparison.of(recordings[i]); });
+  std::erase(found, std::nullopt);
+  const auto largest = std::ranges::max_element(found, {}, [](const auto& each) { return ratio(*each); });
+  return largest == found.end() ? std::nullopt : *largest;
 }
 
 }  // namespace heatsoak::diagnosis

@@ -17,13 +17,12 @@ std::optional<Diagnosis> without(const std::string& recording, const Diagnosis& 
   estimation::PosteriorOptions options;
   options.flux = after.flux;
   options.weights = diagnosis.selection.weights;
-  const estimation::SomeRuns others = estimation::some_of(diagnosis.runs, after.start_C, options, [&](const estimation::MeasuredRun& run) {
-    return estimation::recording_of(run) != recording;
-  });
+  const estimation::SomeRuns others = estimation::some_of(
+      diagnosis.runs, after, options, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) != recording; });
   if (others.runs.empty()) {
     return std::nullopt;
   }
-  estimation::Posterior fit = estimation::fit_of(after.model, others);
+  estimation::Posterior fit = estimation::fit_of(others);
   if (!std::isfinite(fit.evidence_nats)) {
     return std::nullopt;
   }

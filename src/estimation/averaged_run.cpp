@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "thermal/network.h"
+
 namespace heatsoak::estimation {
 namespace {
 
@@ -11,7 +13,9 @@ constexpr double kSharesOfTimeConstant = 5.0;
 /// Short enough to keep the lag of sensors, which is a few seconds, visible.
 constexpr double kLongestSegment_s = 3.0;
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// Matrix of one interval, on the stack: one is made for every interval.
+using RowMajor =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, thermal::Network::kMostNodes, thermal::Network::kMostNodes>;
 
 }  // namespace
 
@@ -69,27 +73,31 @@ LinearisedRun Averaging::run() const {
   out.residual_K = average(run_.residual_K);
   out.residual_K = (weight_.array() > 0.0).select(out.residual_K, std::numeric_limits<double>::quiet_NaN());
   out.by_start = average(run_.by_start);
+  RowMajor transition, injection, covariance_K2, before;
   auto uncertainty = run_.state_uncertainties.begin();
   for (Eigen::Index segment = 0; segment < segments_; ++segment) {
     out.state_C.col(segment) = run_.state_C.col(middle_of(segment));
     if (segment + 1 == segments_) {
       break;
     }
-    RowMajor transition = RowMajor::Identity(x, x);
-    RowMajor injection = RowMajor::Zero(x, q);
+    transition.setIdentity(x, x);
+    injection.setZero(x, q);
+    covariance_K2.setZero(x, x);
     double duration_s = 0.0;
-    Eigen::MatrixXd covariance_K2 = Eigen::MatrixXd::Zero(x, x);
     bool has_uncertainty = false;
     for (Eigen::Index k = middle_of(segment); k < middle_of(segment + 1); ++k) {
       const Eigen::Map<const RowMajor> step(run_.transition.data() + k * x * x, x, x);
-      transition = step * transition.eval();
-      injection = step * injection.eval() + Eigen::Map<const RowMajor>(run_.injection.data() + k * x * q, x, q);
+      before = transition;
+      transition = step.lazyProduct(before);
+      before = injection;
+      injection = step.lazyProduct(before) + Eigen::Map<const RowMajor>(run_.injection.data() + k * x * q, x, q);
       duration_s += run_.duration_s[static_cast<std::size_t>(k)];
       while (uncertainty != run_.state_uncertainties.end() && uncertainty->interval < k) {
         ++uncertainty;
       }
       if (has_uncertainty) {
-        covariance_K2 = step * covariance_K2.eval() * step.transpose();
+        before = step.lazyProduct(covariance_K2);
+        covariance_K2 = before.lazyProduct(step.transpose());
       }
       if (uncertainty != run_.state_uncertainties.end() && uncertainty->interval == k) {
         covariance_K2 += uncertainty->covariance_K2;

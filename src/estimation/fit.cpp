@@ -97,8 +97,7 @@ double left_out_error_K(const Posterior& plain, const std::vector<MeasuredRun>& 
   std::vector<LinearisedRun> paths(runs.size());
   std::vector<int> failed(runs.size(), 0);
   base::in_parallel(runs.size(), 0, [&](std::size_t r) {
-    const Posterior others =
-        fit_of(plain.model, some_of(runs, plain.start_C, setup.plain(), [&](const MeasuredRun& run) { return &run != &runs[r]; }));
+    const Posterior others = fit_of(some_of(runs, plain, setup.plain(), [&](const MeasuredRun& run) { return &run != &runs[r]; }));
     failed[r] = std::isfinite(others.evidence_nats) ? 0 : 1;
     if (failed[r] == 0) {
       paths[r] = linearise(others.model, plain.start_C[r], runs[r]);
@@ -110,7 +109,7 @@ double left_out_error_K(const Posterior& plain, const std::vector<MeasuredRun>& 
 /// Replaces the fit by plain least squares of the free runs if that predicts left-out runs clearly better than the fit follows them. If the
 /// motor has more bodies than the model, slow unknown heat hides the misfit and biases the parameters.
 void prefer_free_runs(const std::vector<MeasuredRun>& runs, const FitSetup& setup, Posterior& now, std::optional<double>& error_K) {
-  Posterior plain = try_posterior_of(now.model, runs, now.start_C, setup.plain());
+  Posterior plain = try_posterior_from(now, runs, setup.plain());
   const double now_K = rms_K(now.fitted, setup.weights);
   if (!std::isfinite(plain.evidence_nats) || !(now_K > thresholds().clearly_other_ratio * left_out_error_K(plain, runs, setup))) {
     return;
@@ -145,7 +144,7 @@ AtHeat settle_heat(FirstFit& first, const std::vector<MeasuredRun>& runs, bool w
     if (round >= kScreens && !seen.insert(place).second) {
       break;
     }
-    last = posterior_of(last.model, runs, last.start_C, setup.with(with_flux ? setup.grid.at(place) : none));
+    last = posterior_from(last, runs, setup.with(with_flux ? setup.grid.at(place) : none));
     if (round <= kScreens || last.evidence_nats > best.fit.evidence_nats) {
       best = {last, place};
     }
@@ -186,7 +185,7 @@ Fit fit_beside_heat(FirstFit first, const std::vector<MeasuredRun>& runs, bool w
     PosteriorOptions averaged = setup.around(place);
     // The intervals of a calibration are those of its network; a search for missing effects must allow for more bodies.
     averaged.has_uneven_bodies = false;
-    now = posterior_of(now.model, runs, now.start_C, averaged);
+    now = posterior_from(now, runs, averaged);
     if (compares_runs(now.model, runs)) {
       prefer_free_runs(runs, setup, now, found.free_run_error_K);
     }

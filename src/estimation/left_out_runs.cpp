@@ -1,6 +1,7 @@
 #include "estimation/left_out_runs.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -27,7 +28,7 @@ double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& r
     }
     options.weights[r].tail((run.samples() - seen(run)) * sensors).setZero();
   }
-  const Posterior fit = try_posterior_of(start.model, runs, start.start_C, options);
+  const Posterior fit = try_posterior_from(start, runs, options);
   if (!std::isfinite(fit.evidence_nats)) {
     return std::numeric_limits<double>::infinity();
   }
@@ -90,7 +91,7 @@ bool is_confirmed(const Eigen::VectorXd& gain_nats) {
   return gain_nats.size() > 1 && gain_nats.sum() - gain_nats.maxCoeff() > thresholds().clear_nats;
 }
 
-Posterior fit_of(const Model& model, const SomeRuns& some) { return try_posterior_of(model, some.runs, some.start_C, some.options); }
+Posterior fit_of(const SomeRuns& some) { return try_posterior_from(some.start, some.runs, some.options); }
 
 MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight) {
   for (Eigen::Index row = 0; row < weight.size(); ++row) {
@@ -111,33 +112,41 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {
   return without_own_effect(model, runs).size() >= kFewest;
 }
 
-double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) {
+double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options, double largest_K) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   if (!std::isfinite(fit.evidence_nats)) {
-    return std::numeric_limits<double>::infinity();
+    return kInfinite;
   }
   std::vector<MeasuredRun> accepted = runs;
   for (std::size_t r = 0; r < runs.size() && !options.weights.empty(); ++r) {
     accepted[r] = without_rejected(std::move(accepted[r]), options.weights[r]);
   }
   const std::vector<std::string> recordings = without_own_effect(fit.model, runs);
-  std::vector<double> squares_K2(recordings.size(), std::numeric_limits<double>::infinity());
+  const auto count = static_cast<double>(recordings.size());
+  std::vector<double> squares_K2(recordings.size(), kInfinite);
+  std::atomic<double> sum_K2 = 0.0;
   base::in_parallel(recordings.size(), 0, [&](std::size_t i) {
+    // The sum so far can only grow.
+    if (sum_K2 > largest_K * largest_K * count) {
+      return;
+    }
     const auto is_own = [&](const MeasuredRun& run) { return recording_of(run) == recordings[i]; };
-    const SomeRuns others = some_of(accepted, fit.start_C, options, [&](const MeasuredRun& run) { return !is_own(run); });
-    const Posterior found = fit_of(fit.model, others);
+    const SomeRuns others = some_of(accepted, fit, options, [&](const MeasuredRun& run) { return !is_own(run); });
+    const Posterior found = fit_of(others);
     if (std::isfinite(found.evidence_nats)) {
-      const SomeRuns own = some_of(accepted, fit.start_C, options, is_own);
+      const SomeRuns own = some_of(accepted, fit, options, is_own);
       squares_K2[i] = std::pow(rms_K(open_loop_errors(found.model, own.runs, others.runs)), 2);
     }
+    sum_K2 += squares_K2[i];
   });
-  return std::sqrt(std::reduce(squares_K2.begin(), squares_K2.end()) / static_cast<double>(squares_K2.size()));
+  return std::sqrt(std::reduce(squares_K2.begin(), squares_K2.end()) / count);
 }
 
 Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& own, const PosteriorOptions& plain) {
   if (!std::isfinite(fit.evidence_nats)) {
     return fit;
   }
-  Posterior other = try_posterior_of(fit.model, runs, fit.start_C, plain);
+  Posterior other = try_posterior_from(fit, runs, plain);
   if (!std::isfinite(other.evidence_nats)) {
     return fit;
   }
@@ -146,7 +155,8 @@ Posterior more_predictive(Posterior fit, const std::vector<MeasuredRun>& runs, c
       return error_of_ends_K(fit, runs, own) <= error_of_ends_K(other, runs, plain);
     }
     // If the errors hardly differ, noise would decide, and the plain fit is worse on average.
-    return left_out_error_K(other, runs, plain) >= thresholds().better_share * left_out_error_K(fit, runs, own);
+    const double largest_K = thresholds().better_share * left_out_error_K(fit, runs, own);
+    return left_out_error_K(other, runs, plain, largest_K) >= largest_K;
   };
   if (keeps_own()) {
     return fit;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -32,24 +33,25 @@ Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPri
 /// `gain_nats`: gain of each recording as the difference of two results of left_out_nats(). False for a single recording.
 bool is_confirmed(const Eigen::VectorXd& gain_nats);
 
-/// Some of the runs, with their start temperatures, weights and averaging.
+/// Some of the runs, with their part of a fit to all, their weights and averaging.
 struct SomeRuns {
   std::vector<MeasuredRun> runs;
-  std::vector<std::vector<double>> start_C;
+  Posterior start;
   PosteriorOptions options;
 };
 
-/// Returns the runs for which `belongs(run)` is true.
+/// Returns the runs for which `belongs(run)` is true. `fit`: to all runs.
 template <class Predicate>
-SomeRuns some_of(const std::vector<MeasuredRun>& runs, const std::vector<std::vector<double>>& start_C, const PosteriorOptions& options,
-                 Predicate belongs) {
+SomeRuns some_of(const std::vector<MeasuredRun>& runs, const Posterior& fit, const PosteriorOptions& options, Predicate belongs) {
   SomeRuns part{{}, {}, options};
+  part.start.model = fit.model;
   part.options.weights.clear();
   part.options.merged.clear();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (belongs(runs[r])) {
       part.runs.push_back(runs[r]);
-      part.start_C.push_back(start_C[r]);
+      part.start.start_C.push_back(fit.start_C[r]);
+      part.start.fitted.push_back(fit.fitted[r]);
       if (!options.weights.empty()) {
         part.options.weights.push_back(options.weights[r]);
       }
@@ -62,7 +64,7 @@ SomeRuns some_of(const std::vector<MeasuredRun>& runs, const std::vector<std::ve
 }
 
 /// Fits the model to these runs; the evidence is −∞ if the fit fails.
-Posterior fit_of(const Model& model, const SomeRuns& some);
+Posterior fit_of(const SomeRuns& some);
 
 /// Returns the run with NaN for the samples whose weight is 0. `weight` per sample; empty: all stay.
 MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight);
@@ -75,8 +77,10 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all
 /// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted. Samples
-/// with the weight 0 do not count. Call it only if can_leave_out().
-double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
+/// with the weight 0 do not count. Call it only if can_leave_out(). The result may be ∞ if the error is above `largest_K`: then not all
+/// recordings need a fit.
+double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options,
+                        double largest_K = std::numeric_limits<double>::infinity());
 
 /// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts better: left-out recordings with
 /// less than Thresholds::better_share of the error, or, with too few recordings, the last third of every run after a fit to the first two

@@ -52,7 +52,7 @@ class Recorder {
     Eigen::Map<RowMajor>(out_.transition.data() + interval * x * x, x, x) = step.by_start;
     Eigen::Map<RowMajor>(out_.injection.data() + interval * x * out_.fluxes, x, out_.fluxes) = step.by_parameter.rightCols(out_.fluxes);
     out_.duration_s[place] = run_.time_s[place + 1] - run_.time_s[place];
-    next_off_K_.noalias() = step.by_start * off_K_;
+    next_off_K_.noalias() = step.by_start.lazyProduct(off_K_);
     if (path_C_) {
       out_.state_C.col(interval + 1) = path_C_->col(interval + 1);
       next_off_K_ += step.state_C - path_C_->col(interval + 1);
@@ -60,9 +60,9 @@ class Recorder {
       out_.state_C.col(interval + 1) = step.state_C;
     }
     off_K_.swap(next_off_K_);
-    next_by_start_.noalias() = step.by_start * by_start_;
+    next_by_start_.noalias() = step.by_start.lazyProduct(by_start_);
     by_start_.swap(next_by_start_);
-    next_by_parameter_.noalias() = step.by_start * by_parameter_;
+    next_by_parameter_.noalias() = step.by_start.lazyProduct(by_parameter_);
     next_by_parameter_ += step.by_parameter.leftCols(wanted);
     by_parameter_.swap(next_by_parameter_);
   }

@@ -104,10 +104,11 @@ LinearFit bounded_fit(const RunEvidence& all, const ThetaPrior& prior, const Eig
 
 class Fitter {
  public:
-  Fitter(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C, const PosteriorOptions& options)
-      : runs_(runs), options_(options) {
-    now_.model = std::move(model);
-    now_.start_C = std::move(start_C);
+  /// `fitted` of the start is empty, or the simulation of these runs with its model.
+  Fitter(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) : runs_(runs), options_(options) {
+    now_.model = start.model;
+    now_.start_C = start.start_C;
+    now_.fitted = start.fitted;
     now_.flux = options.flux;
     const Eigen::Index count = now_.model.free_count();
     low_.resize(count);
@@ -122,10 +123,15 @@ class Fitter {
   }
 
   Posterior run() {
-    linearise_all(now_);
+    if (now_.fitted.empty()) {
+      linearise_all(now_);
+    }
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      now_.fitted[r].residual_K = (runs_[r].measured_C - now_.fitted[r].sensor_C).transpose().reshaped();
+    }
     std::vector<DesignRun> designs = design_of(now_);
+    RunEvidence all = all_runs(designs, designs, now_.flux);
     for (int step = 0; step < options_.most_steps; ++step) {
-      const RunEvidence all = all_runs(designs, designs, now_.flux);
       const double misfit = misfit_of(all, now_);
       now_.cost_nats = 0.5 * misfit;
       const LinearFit fit = bounded_step(all, options_.longest_step_ratio);
@@ -263,9 +269,9 @@ class Fitter {
     return next;
   }
 
-  /// Takes `step`, or else the first of several shorter ones that decreases the cost, see PosteriorOptions::holds_covariance. Returns false
-  /// if none does.
-  bool take(const RunEvidence& all, Eigen::VectorXd step, std::vector<DesignRun>& designs) {
+  /// `all`: of the designs, before and after. Takes `step`, or else the first of several shorter ones that decreases the cost, see
+  /// PosteriorOptions::holds_covariance. Returns false if none does.
+  bool take(RunEvidence& all, Eigen::VectorXd step, std::vector<DesignRun>& designs) {
     constexpr int kTries = 5;
     constexpr double kSmallerBox_ratio = 0.25;
     std::vector<Eigen::VectorXd> start_step_K = start_steps_K(step, designs);
@@ -273,10 +279,12 @@ class Fitter {
       try {
         Posterior next = moved(step, start_step_K);
         std::vector<DesignRun> next_designs = design_of(next);
-        next.cost_nats = 0.5 * misfit_of(all_runs(next_designs, options_.holds_covariance ? designs : next_designs, now_.flux), next);
+        RunEvidence next_all = all_runs(next_designs, options_.holds_covariance ? designs : next_designs, now_.flux);
+        next.cost_nats = 0.5 * misfit_of(next_all, next);
         if (next.cost_nats < now_.cost_nats + 1e-9) {
           now_ = std::move(next);
           designs = std::move(next_designs);
+          all = options_.holds_covariance ? all_runs(designs, designs, now_.flux) : std::move(next_all);
           return true;
         }
       } catch (const base::Failure&) {
@@ -299,6 +307,13 @@ class Fitter {
   Eigen::VectorXd low_, high_;
 };
 
+Posterior start_at(Model model, std::vector<std::vector<double>> start_C) {
+  Posterior start;
+  start.model = std::move(model);
+  start.start_C = std::move(start_C);
+  return start;
+}
+
 }  // namespace
 
 PosteriorOptions least_squares_options(const Model& model, int most_steps) {
@@ -311,13 +326,21 @@ PosteriorOptions least_squares_options(const Model& model, int most_steps) {
 
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                        const PosteriorOptions& options) {
-  return Fitter(std::move(model), runs, std::move(start_C), options).run();
+  return posterior_from(start_at(std::move(model), std::move(start_C)), runs, options);
+}
+
+Posterior posterior_from(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) {
+  return Fitter(start, runs, options).run();
 }
 
 Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                            const PosteriorOptions& options) {
+  return try_posterior_from(start_at(std::move(model), std::move(start_C)), runs, options);
+}
+
+Posterior try_posterior_from(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options) {
   try {
-    return posterior_of(std::move(model), runs, std::move(start_C), options);
+    return posterior_from(start, runs, options);
   } catch (const base::Failure&) {
     Posterior none;
     none.flux = options.flux;

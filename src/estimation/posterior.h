@@ -51,9 +51,14 @@ PosteriorOptions least_squares_options(const Model& model, int most_steps);
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                        const PosteriorOptions& options);
 
+/// Continues from a fit to these runs with other options or readings. Its `fitted` saves the first simulation.
+Posterior posterior_from(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
+
 /// Fits a trial model, whose temperatures may diverge: then the evidence is −∞ and the other results are empty. Arguments as in
 /// posterior_of().
 Posterior try_posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                            const PosteriorOptions& options);
+/// Same with the arguments of posterior_from().
+Posterior try_posterior_from(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
 
 }  // namespace heatsoak::estimation

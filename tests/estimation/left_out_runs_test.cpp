@@ -102,6 +102,26 @@ TEST(LeftOutErrors, ARunThatContradictsTheOthersRaisesThem) {
   EXPECT_GT(left_out_error_K(fitted.fit, fitted.runs, fitted.options), 3.0 * before_K);
 }
 
+TEST(LeftOutErrors, StopAboveTheLargest) {
+  const FittedRuns fitted(3);
+  const double error_K = left_out_error_K(fitted.fit, fitted.runs, fitted.options);
+  EXPECT_EQ(left_out_error_K(fitted.fit, fitted.runs, fitted.options, 1.001 * error_K), error_K);
+  EXPECT_GT(left_out_error_K(fitted.fit, fitted.runs, fitted.options, 0.2 * error_K), 0.2 * error_K);
+}
+
+/// The known simulation saves time only; the readings are those of the runs given.
+TEST(Posterior, FromAFitToOtherReadingsIsThatOfTheSameStart) {
+  FittedRuns fitted(3);
+  for (MeasuredRun& run : fitted.runs) {
+    run.measured_C.array() += 1.0;
+  }
+  const Posterior from = posterior_from(fitted.fit, fitted.runs, fitted.options);
+  const Posterior again = posterior_of(fitted.fit.model, fitted.runs, fitted.fit.start_C, fitted.options);
+  EXPECT_EQ(from.model.theta(), again.model.theta());
+  EXPECT_EQ(from.evidence_nats, again.evidence_nats);
+  EXPECT_NE(from.model.theta(), fitted.fit.model.theta());
+}
+
 TEST(LeftOutErrors, NeedThreeRecordingsWithoutAnEffectOfTheirOwn) {
   const FittedRuns two(2);
   EXPECT_FALSE(can_leave_out(two.fit.model, two.runs));
