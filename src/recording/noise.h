@@ -21,7 +21,8 @@ double resolution_of(std::span<const double> values);
 struct NoiseLevel {
   double step = 0.0;   ///< resolution_of()
   double usual = 0.0;  ///< median of the nonzero changes from one sample to the next
-  /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12.
+  /// Standard deviation of white noise, quantisation included: 1.4826 · median|second difference| / √6, but not below step/√12. Differences
+  /// that are equal because of the resolution count as spread over half a step to both sides.
   double noise = 0.0;
   double repeats_share = 0.0;  ///< share of neighbouring samples that are equal
   std::size_t distinct = 0;    ///< number of distinct values in the sample

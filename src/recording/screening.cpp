@@ -297,6 +297,50 @@ bool is_spike(std::span<const double> values, std::span<const std::size_t> rows,
          (value > before.median) == (value > after.median) && std::abs(before.median - after.median) <= kAgree_share * distance;
 }
 
+/// Value at some time on the straight line through three samples (median slope, Theil 1950), and the largest distance of a sample from it.
+struct Line {
+  double there = 0.0;
+  double deviation = 0.0;
+};
+
+double middle(double a, double b, double c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
+
+Line line_of(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, double there_s) {
+  std::array<double, kSide> ahead_s{};
+  std::array<double, kSide> value{};
+  for (std::size_t i = 0; i < kSide; ++i) {
+    ahead_s[i] = time_s[rows[i]] - there_s;
+    value[i] = values[rows[i]];
+  }
+  const auto slope_per_s = [&](std::size_t i, std::size_t j) { return (value[j] - value[i]) / (ahead_s[j] - ahead_s[i]); };
+  const double usual_per_s = middle(slope_per_s(0, 1), slope_per_s(1, 2), slope_per_s(0, 2));
+  for (std::size_t i = 0; i < kSide; ++i) {
+    value[i] -= usual_per_s * ahead_s[i];
+  }
+  const double there = middle(value[0], value[1], value[2]);
+  const auto distance = [there](double each) { return std::abs(each - there); };
+  return {there, std::max({distance(value[0]), distance(value[1]), distance(value[2])})};
+}
+
+/// True if the sample is far from the lines through the three valid samples before and after and from its two neighbours, on the same side
+/// of all three. A smooth peak lies between its neighbours and the two lines.
+bool is_off_slope(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, std::size_t k,
+                  double least) {
+  constexpr double kOfLine_ratio = 3.0;
+  constexpr double kAgree_share = 0.4;
+  if (k < kSide || k + kSide >= rows.size()) {
+    return false;
+  }
+  const double there_s = time_s[rows[k]];
+  const Line before = line_of(values, time_s, rows.subspan(k - kSide, kSide), there_s);
+  const Line after = line_of(values, time_s, rows.subspan(k + 1, kSide), there_s);
+  const double share = (there_s - time_s[rows[k - 1]]) / (time_s[rows[k + 1]] - time_s[rows[k - 1]]);
+  const double value = values[rows[k]];
+  const auto [low, high] = std::minmax({before.there, after.there, std::lerp(values[rows[k - 1]], values[rows[k + 1]], share)});
+  const double distance = std::max(low - value, value - high);
+  return distance > std::max(least, kOfLine_ratio * std::max(before.deviation, after.deviation)) && high - low <= kAgree_share * distance;
+}
+
 /// Omits outliers. Neighbours are the nearest valid samples, across gaps within a run.
 void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noise, const Reported& reported) {
   constexpr double kFar_ratio = 5.0;
@@ -313,7 +357,7 @@ void leave_out_outliers(Recording& part, Channel& channel, const NoiseLevel& noi
     for (std::size_t k = 0; k < rows.size() && rows.size() > 2 * kSide; ++k) {
       const bool is_near_next = k + 1 < rows.size() && k > 0 && std::abs(channel.values[rows[k]] - channel.values[rows[k - 1]]) < least &&
                                 std::abs(channel.values[rows[k]] - channel.values[rows[k + 1]]) < least;
-      if (!is_near_next && is_spike(channel.values, rows, k, least)) {
+      if (!is_near_next && (is_spike(channel.values, rows, k, least) || is_off_slope(channel.values, part.time_s, rows, k, least))) {
         outliers.push_back(rows[k]);
       }
     }

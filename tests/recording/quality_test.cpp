@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <set>
 
 #include "base/diagnostic.h"
 #include "read_log.h"
@@ -65,6 +67,24 @@ TEST(Noise, WhiteNoiseOnASlope) {
   EXPECT_NEAR(noise_level(values, runs).noise, 0.5 / std::sqrt(12.0), 1e-9) << "no noise is seen below the resolution";
 }
 
+/// Sensors with 8 to 12 bits resolve little more than their noise. The standard deviation then is √(noise² + step²/12).
+TEST(Noise, OfSensorsThatResolveLittle) {
+  constexpr double kStep_K = 0.1;
+  for (const double noise_K : {0.06, 0.08, 0.1, 0.12, 0.14, 0.16, 0.18}) {
+    base::Random random(7, 0);
+    std::vector<double> values(20000);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      double normal = -6.0;
+      for (int k = 0; k < 12; ++k) {
+        normal += random.uniform();
+      }
+      values[i] = kStep_K * std::round((20.0 + 0.0123 * static_cast<double>(i) + noise_K * normal) / kStep_K);
+    }
+    const std::vector<std::pair<std::size_t, std::size_t>> runs{{0, values.size()}};
+    EXPECT_NEAR(noise_level(values, runs).noise / std::hypot(noise_K, kStep_K / std::sqrt(12.0)), 1.0, 0.1) << noise_K;
+  }
+}
+
 /// A fifth of the samples has random values. The encoder's resolution must still be found.
 TEST(Noise, ResolutionAmongBadSamples) {
   // The method counts equal distances between values; random values may form a finer grid by chance.
@@ -90,6 +110,26 @@ TEST(Screening, PlantedOutliersAreFoundByLine) {
   EXPECT_THAT(lines, testing::IsSupersetOf({402, 882, 883}));
   EXPECT_LE(lines.size(), 5U);
   EXPECT_TRUE(std::isnan(result.recording.find("winding_C")->values[400]));
+}
+
+/// The winding heats and cools by 1 to 2 K between rows. An outlier differs from its neighbours little more than these do from each other.
+TEST(Screening, OutliersOnSlopesAreFoundAndNothingElse) {
+  SyntheticLog log;
+  log.noise_K = 0.1;
+  log.step_K = 0.1;
+  log.current_A = [](double t) { return std::fmod(t, 40.0) < 20.0 ? 7.0 : 0.0; };
+  constexpr int kEvery = 37;
+  std::set<int> planted;
+  const Read result = read_text(changed(log, [&planted](int row, std::vector<double>& cells) {
+    if (row % kEvery == kEvery - 1) {
+      cells[winding] += row % 2 == 0 ? 10.0 : -10.0;
+      planted.insert(row + 2);
+    }
+  }));
+  const std::vector<int> lines = lines_of(result.report.find("winding_C", LeftOutReason::outlier));
+  const auto found = std::ranges::count_if(lines, [&](int line) { return planted.contains(line); });
+  EXPECT_GE(found, 0.95 * static_cast<double>(planted.size())) << planted.size();
+  EXPECT_LE(static_cast<std::ptrdiff_t>(lines.size()) - found, 1);
 }
 
 TEST(Screening, FrozenSensorIsLeftOutByLine) {
