@@ -97,13 +97,15 @@ void NoiseGauge::add(std::span<const double> values) {
     const double change = value - value_;
     if (!std::isnan(change)) {
       changes_.add(std::abs(change));
-      const double bend = change - (value_ - before_);
-      if (!std::isnan(bend)) {
-        bends_.add(std::abs(bend));
-      }
     }
-    before_ = value_;
+    const double bend = change - change_;
+    const double twist = bend - bend_;
+    if (!std::isnan(twist)) {
+      twists_.add(std::abs(twist));
+    }
     value_ = value;
+    change_ = change;
+    bend_ = bend;
   }
 }
 
@@ -117,7 +119,7 @@ NoiseLevel NoiseGauge::level() const {
   std::erase(changes, 0.0);
   level.repeats_share = pairs > 0.0 ? 1.0 - static_cast<double>(changes.size()) / pairs : 0.0;
   level.usual = median_of(std::move(changes));
-  level.noise = std::max(kMedianToSigma * grouped_median(bends_.values(), level.step) / std::sqrt(6.0), level.step / std::sqrt(12.0));
+  level.noise = std::max(kMedianToSigma * grouped_median(twists_.values(), level.step) / std::sqrt(20.0), level.step / std::sqrt(12.0));
   return level;
 }
 

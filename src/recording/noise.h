@@ -21,7 +21,7 @@ double resolution_of(std::span<const double> values);
 struct NoiseLevel {
   double step = 0.0;   ///< resolution_of()
   double usual = 0.0;  ///< median of the nonzero changes from one sample to the next
-  /// Standard deviation of white noise, quantisation included: 1.4826 · median|second difference| / √6, but not below step/√12. Differences
+  /// Standard deviation of white noise, quantisation included: 1.4826 · median|third difference| / √20, but not below step/√12. Differences
   /// that are equal because of the resolution count as spread over half a step to both sides.
   double noise = 0.0;
   double repeats_share = 0.0;  ///< share of neighbouring samples that are equal
@@ -32,19 +32,20 @@ struct NoiseLevel {
 /// spaced sample.
 class NoiseGauge {
  public:
-  explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
+  explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), twists_(most) {}
 
   /// Begins a new run: differences do not extend over this point.
-  void begin_run() { value_ = before_ = std::numeric_limits<double>::quiet_NaN(); }
+  void begin_run() { value_ = change_ = bend_ = std::numeric_limits<double>::quiet_NaN(); }
   void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
 
  private:
   Thinned values_;
   Thinned changes_;
-  Thinned bends_;
+  Thinned twists_;                                           ///< third differences
   double value_ = std::numeric_limits<double>::quiet_NaN();  ///< last value
-  double before_ = value_;                                   ///< value before the last
+  double change_ = value_;                                   ///< last first difference
+  double bend_ = value_;                                     ///< last second difference
 };
 
 /// Noise of values in order of time. NaN are skipped; differences do not extend over the ends of `runs` ([begin, end)).

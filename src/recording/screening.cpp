@@ -38,14 +38,16 @@ std::vector<Segment> segments_of(std::span<const double> values, std::pair<std::
   return found;
 }
 
+/// Longest constant segment before a jump that a channel of unknown noise may have, in samples.
+constexpr std::size_t kLongHold = 30;
+
 /// Normal behaviour of the channel.
 struct ChannelStatistics {
   double high = 0.0;
   NoiseLevel noise;
-  double repeats_share = 0.0;                 ///< share of equal neighbours, without long constant segments
-  std::optional<std::size_t> longest_chance;  ///< longest constant segment that noise explains, in samples; empty if unknown
-  /// The same for one given segment, such as the one before a jump; empty if unknown.
-  std::optional<std::size_t> longest_before_jump;
+  double repeats_share = 0.0;                   ///< share of equal neighbours, without long constant segments
+  std::optional<std::size_t> longest_chance;    ///< longest constant segment that noise explains, in samples; empty if unknown
+  std::size_t longest_before_jump = kLongHold;  ///< the same for one given segment, such as the one before a jump
 };
 
 /// Sufficient number of samples for a noise estimate.
@@ -76,14 +78,16 @@ ChannelStatistics statistics_of(std::span<const double> values, std::span<const 
   }
   constexpr std::size_t kEnoughSamples = 50;
   constexpr double kTooCoarse_share = 0.5;
+  constexpr double kLogOfThousand = 6.9;
   statistics.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
   const double share = std::max({statistics.repeats_share, 0.05, repeat_probability(noise)});
+  const auto longest = [share](double nats) { return 1 + static_cast<std::size_t>(std::ceil(nats / -std::log(share))); };
   if (samples >= kEnoughSamples && share < kTooCoarse_share) {
     // n equal neighbours occur by chance in one of 1000 logs of this length: rows · share^n = 1/1000.
-    constexpr double kLogOfThousand = 6.9;
-    const auto longest = [share](double nats) { return 1 + static_cast<std::size_t>(std::ceil(nats / -std::log(share))); };
     statistics.longest_chance = longest(std::log(static_cast<double>(values.size())) + kLogOfThousand);
-    statistics.longest_before_jump = longest(kLogOfThousand);
+  }
+  if (samples >= kEnoughSamples && share < 1.0) {
+    statistics.longest_before_jump = std::min(kLongHold, longest(kLogOfThousand));
   }
   return statistics;
 }
@@ -95,11 +99,9 @@ bool is_improbable(const Segment& segment, const ChannelStatistics& statistics) 
 
 /// True if the constant segment ends in a jump much larger than the following changes: the sensor was frozen while the temperature changed.
 bool ends_in_isolated_jump(const std::vector<Segment>& run, std::size_t at, const ChannelStatistics& statistics) {
-  constexpr std::size_t kLongHold = 30;
   constexpr double kIsolated_ratio = 4.0;
   constexpr std::size_t kAfter = 5;
-  const std::size_t long_hold = statistics.longest_before_jump.value_or(kLongHold);
-  if (run[at].samples <= long_hold || at + 2 >= run.size()) {
+  if (run[at].samples <= statistics.longest_before_jump || at + 2 >= run.size()) {
     return false;
   }
   const double jump = std::abs(run[at + 1].value - run[at].value);

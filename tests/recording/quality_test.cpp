@@ -41,7 +41,7 @@ TEST_P(Resolution, SoundLogKeepsItsSamplesAndRaisesNoSuspicion) {
 }
 INSTANTIATE_TEST_SUITE_P(Synthetic, Resolution, testing::Values(0.0, 0.1, 0.25, 1.0));
 
-/// Second differences of white noise have six times its variance; a slope contributes nothing.
+/// Third differences of white noise have twenty times its variance; a slope contributes nothing.
 TEST(Noise, WhiteNoiseOnASlope) {
   std::vector<double> values(20000);
   const std::vector<std::pair<std::size_t, std::size_t>> runs{{0, values.size()}};
