@@ -94,18 +94,15 @@ void NoiseGauge::add(std::span<const double> values) {
     if (!std::isnan(value)) {
       values_.add(value);
     }
-    const double change = value - value_;
+    const double change = value - before_[0];
     if (!std::isnan(change)) {
       changes_.add(std::abs(change));
     }
-    const double bend = change - change_;
-    const double twist = bend - bend_;
+    const double twist = value - 3.0 * before_[0] + 3.0 * before_[1] - before_[2];
     if (!std::isnan(twist)) {
       twists_.add(std::abs(twist));
     }
-    value_ = value;
-    change_ = change;
-    bend_ = bend;
+    before_ = {value, before_[0], before_[1]};
   }
 }
 

@@ -1,12 +1,13 @@
 // Estimates noise and resolution of a channel without a model.
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "base/unknown.h"
 #include "recording/thinned.h"
 
 namespace heatsoak::recording {
@@ -35,17 +36,15 @@ class NoiseGauge {
   explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), twists_(most) {}
 
   /// Begins a new run: differences do not extend over this point.
-  void begin_run() { value_ = change_ = bend_ = std::numeric_limits<double>::quiet_NaN(); }
+  void begin_run() { before_.fill(base::kUnknown); }
   void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
 
  private:
   Thinned values_;
   Thinned changes_;
-  Thinned twists_;                                           ///< third differences
-  double value_ = std::numeric_limits<double>::quiet_NaN();  ///< last value
-  double change_ = value_;                                   ///< last first difference
-  double bend_ = value_;                                     ///< last second difference
+  Thinned twists_;                                                                   ///< third differences
+  std::array<double, 3> before_ = {base::kUnknown, base::kUnknown, base::kUnknown};  ///< last three values, the last one first
 };
 
 /// Noise of values in order of time. NaN are skipped; differences do not extend over the ends of `runs` ([begin, end)).
