@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <optional>
 
 #include "base/confidence.h"
 #include "present/closed_loop.h"
@@ -136,34 +138,47 @@ void add_guard_notes(Document& document, const simulate::MatchSimulation& answer
   }
 }
 
-/// Describes the peak with the heat factor of the forecast band at its upper end.
-std::string upper_words(double peak_C) {
-  return fmt::format("{:.1f} °C with the losses at their {:.0f}th percentile", peak_C, 50.0 * (1.0 + base::kBand_share));
+std::string upper_words(double peak_C) { return fmt::format("{:.1f} °C {}", peak_C, upper_losses_words()); }
+
+/// Returns the verdict as words in front of a peak.
+std::string verdict_words(const simulate::DrivenMatch& driven) {
+  const simulate::DriveScore& score = driven.run.score;
+  switch (driven.verdict) {
+    case select::Verdict::pass:
+      return "stays within its limits: ";
+    case select::Verdict::marginal:
+      return "may exceed a limit or miss the demand: ";
+    case select::Verdict::fail:
+      return "exceeds a limit: ";
+    case select::Verdict::infeasible:
+      break;
+  }
+  return fmt::format("cannot drive this match: {}. It is not too hot: ", words_of(*simulate::drive_problem(score), score));
 }
 
-/// Returns the sentence about one planner: the verdict with its reason, then the hottest winding.
+/// Formats as "(limit 155 °C)", with the peak of the upper end of the forecast band if there is one.
+std::string limit_words(double limit_C, std::optional<double> upper_C) {
+  return fmt::format("(limit {:.0f} °C{})", limit_C, upper_C ? "; " + upper_words(*upper_C) : "");
+}
+
+/// Returns the sentence about one planner: the verdict with its reason, then the hottest body over its limit, else the hottest winding.
 Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMatch& driven) {
   const simulate::DriveScore& score = driven.run.score;
   const motor::MotorValues& limits = answer.motor.nominal;
-  const std::string winding =
-      fmt::format("the hottest winding, of wheel {}, reaches {:.1f} °C (limit {:.0f} °C{})", score.hottest_wheel + 1, score.winding_peak_C,
-                  limits.winding_limit_C,
-                  driven.upper && driven.verdict != select::Verdict::infeasible ? "; " + upper_words(driven.upper->winding_peak_C) : "");
-  const double hottest_C = driven.verdict == select::Verdict::marginal ? driven.upper->winding_peak_C : score.winding_peak_C;
-  const bool is_of_stator =
-      (driven.verdict == select::Verdict::fail || driven.verdict == select::Verdict::marginal) && hottest_C <= limits.winding_limit_C;
-  const std::string what = driven.verdict == select::Verdict::infeasible
-                               ? "cannot drive this match: " + words_of(*simulate::drive_problem(score), score)
-                           : driven.verdict == select::Verdict::fail     ? "exceeds a limit: "
-                           : driven.verdict == select::Verdict::marginal ? "may exceed a limit or miss the demand: "
-                                                                         : "stays within its limits: ";
-  const std::string peak = driven.verdict == select::Verdict::infeasible ? fmt::format(". It is not too hot: {}", winding)
-                           : is_of_stator
-                               ? fmt::format("the stator reaches {:.1f} °C (limit {:.0f} °C{})", score.stator_peak_C,
-                                             *limits.stator_limit_C, driven.upper ? "; " + upper_words(driven.upper->stator_peak_C) : "")
-                               : winding;
+  const bool is_driven = driven.verdict != select::Verdict::infeasible;
+  const auto upper_C = [&](double simulate::DriveScore::*peak_C) {
+    return driven.upper && is_driven ? std::optional((*driven.upper).*peak_C) : std::nullopt;
+  };
+  const simulate::DriveScore& deciding = driven.verdict == select::Verdict::marginal ? *driven.upper : score;
+  const bool is_of_stator = is_driven && deciding.winding_peak_C <= limits.winding_limit_C &&
+                            deciding.stator_peak_C > limits.stator_limit_C.value_or(std::numeric_limits<double>::infinity());
+  const std::string peak =
+      is_of_stator ? fmt::format("the stator reaches {:.1f} °C {}", score.stator_peak_C,
+                                 limit_words(*limits.stator_limit_C, upper_C(&simulate::DriveScore::stator_peak_C)))
+                   : fmt::format("the hottest winding, of wheel {}, reaches {:.1f} °C {}", score.hottest_wheel + 1, score.winding_peak_C,
+                                 limit_words(limits.winding_limit_C, upper_C(&simulate::DriveScore::winding_peak_C)));
   return {fmt::format("In this one game (seed {}) the nominal {} {}{}{}.", answer.seed, answer.motor.id,
-                      answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "", what, peak),
+                      answer.runs.size() > 1 ? fmt::format("with {} ", duty::to_string(driven.planner)) : "", verdict_words(driven), peak),
           tone_of(driven.verdict)};
 }
 
@@ -193,6 +208,8 @@ std::string_view verb_of(select::Verdict verdict) {
 }
 
 }  // namespace
+
+std::string upper_losses_words() { return fmt::format("with the losses at their {:.0f}th percentile", 50.0 * (1.0 + base::kBand_share)); }
 
 std::span<const EnergyPart> energy_parts() {
   static constexpr std::array<EnergyPart, 9> kParts{{{"copper", &simulate::EnergyAccount::copper_J},

@@ -23,6 +23,9 @@ struct GivenInputs {
   std::map<std::string, std::string> conditions = {};
 };
 
+/// Describes the second run of a motor with a forecast band, behind a peak.
+std::string upper_losses_words();
+
 Document match_document(const simulate::MatchSimulation& match, const GivenInputs& given);
 Json match_json(const simulate::MatchSimulation& match);
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "present/match.h"
 
 namespace heatsoak::present {
 namespace {
@@ -20,6 +23,9 @@ std::vector<double> column(const std::vector<simulate::MatchRow>& rows, const st
 }
 
 report::ChartLevel limit_level(double limit_C) { return {fmt::format("limit {:.0f} °C", limit_C), limit_C, true}; }
+
+/// Peak of the same game with the forecast band at its upper end.
+report::ChartLevel upper_level(double peak_C) { return {"peak " + upper_losses_words(), peak_C, true}; }
 
 /// Returns the panels for one planner: windings and stators of all wheels, then the motor of the hottest one, the robot and the battery.
 std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, const simulate::DrivenMatch& driven) {
@@ -39,6 +45,10 @@ std::vector<report::ChartPanel> detail(const simulate::MatchSimulation& match, c
   winding.levels.push_back(limit_level(match.motor.nominal.winding_limit_C));
   if (match.motor.nominal.stator_limit_C) {
     stator.levels.push_back(limit_level(*match.motor.nominal.stator_limit_C));
+  }
+  if (driven.upper) {
+    winding.levels.push_back(upper_level(driven.upper->winding_peak_C));
+    stator.levels.push_back(upper_level(driven.upper->stator_peak_C));
   }
   const auto single = [](std::string title, std::string label, report::ChartCurve one) {
     return report::ChartPanel{
@@ -84,19 +94,23 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
   return panels;
 }
 
-/// Returns how one game ended; it is no verdict over tolerances.
+/// Returns how one game ended. Over tolerances, the verdict may be another.
 std::string_view outcome_of(select::Verdict verdict) {
-  return verdict == select::Verdict::pass ? "within limits" : verdict == select::Verdict::fail ? "over a limit" : "not driven";
+  constexpr std::array<std::string_view, 4> kOutcomes{"within limits", "may be over a limit", "over a limit", "not driven"};
+  return kOutcomes.at(static_cast<std::size_t>(verdict));
 }
 
-/// Formats as "within limits, winding 62 °C (limit 155 °C)", for the hottest run; the outcome is that of the deciding one.
+/// Formats as "within limits, winding 62 °C (limit 155 °C)" or "winding 149 to 158 °C" with the upper end of the forecast band, for the
+/// hottest run; the outcome is that of the deciding one.
 std::string verdict_and_peak(const simulate::MatchSimulation& match) {
   double peak_C = 0.0;
+  double upper_C = 0.0;
   for (const simulate::DrivenMatch& each : match.runs) {
     peak_C = std::max(peak_C, each.run.score.winding_peak_C);
+    upper_C = std::max(upper_C, each.upper ? each.upper->winding_peak_C : 0.0);
   }
-  const double limit_C = match.motor.nominal.winding_limit_C;
-  return fmt::format("{}, winding {:.0f} °C (limit {:.0f} °C)", outcome_of(match.verdict()), peak_C, limit_C);
+  return fmt::format("{}, winding {:.0f}{} °C (limit {:.0f} °C)", outcome_of(match.verdict()), peak_C,
+                     upper_C > 0.0 ? fmt::format(" to {:.0f}", upper_C) : "", match.motor.nominal.winding_limit_C);
 }
 
 }  // namespace

@@ -179,6 +179,27 @@ TEST(MatchChart, has_the_winding_above_the_stator_with_one_colour_per_wheel) {
   EXPECT_EQ(panels[1].levels.front().y, 90.0);
 }
 
+TEST(MatchChart, shows_the_peak_at_the_upper_end_of_the_forecast_band) {
+  simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::marginal, 71.5), {});
+  match.runs.resize(1);
+  match.runs.front().rows.resize(2);
+  match.runs.front().upper = match.runs.front().run.score;
+  match.runs.front().upper->winding_peak_C = 174.0;
+  const report::Chart chart = match_chart(match);
+  EXPECT_NE(chart.title.find("may be over a limit, winding 72 to 174 °C"), std::string::npos) << chart.title;
+  EXPECT_EQ(chart.panels[0].levels.back().y, 174.0);
+  EXPECT_NE(chart.panels[0].levels.back().name.find("95th percentile"), std::string::npos);
+}
+
+/// The upper run may lack the voltage for its demand although no body is over its limit, which a stator need not have.
+TEST(MatchAnswer, a_match_that_may_miss_its_demand_names_the_winding) {
+  simulate::MatchSimulation match = both(driven(duty::Planner::jerk_limited, select::Verdict::marginal, 71.5), {});
+  match.runs.resize(1);
+  match.motor.nominal.stator_limit_C.reset();
+  match.runs.front().upper = match.runs.front().run.score;
+  EXPECT_NE(match_document(match, kGiven).headline.front().words.find("the hottest winding"), std::string::npos);
+}
+
 TEST(VerdictChart, draws_one_line_for_a_load_that_does_not_repeat) {
   select::MotorEvaluation motor;
   motor.curves.time_s = {0.0, 60.0};
