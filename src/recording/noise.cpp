@@ -35,22 +35,6 @@ std::vector<Level> levels_of(const std::vector<double>& sorted) {
   return levels;
 }
 
-/// Median of magnitudes that are multiples of `step`. Those of one multiple count as spread evenly over half a step to both sides, as in
-/// the median of grouped data: the plain median of a coarse sensor jumps from one multiple to the next.
-double grouped_median(std::vector<double> magnitudes, double step) {
-  if (magnitudes.empty() || !(step > 0.0)) {
-    return median_of(std::move(magnitudes));
-  }
-  const auto half = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-  std::ranges::nth_element(magnitudes, half);
-  const double multiple = std::round(*half / step);
-  const auto below = std::ranges::count_if(magnitudes, [&](double each) { return std::round(each / step) < multiple; });
-  const auto within = std::ranges::count_if(magnitudes, [&](double each) { return std::round(each / step) == multiple; });
-  const double low = std::max(0.0, multiple - 0.5);
-  const double share = (0.5 * static_cast<double>(magnitudes.size()) - static_cast<double>(below)) / static_cast<double>(within);
-  return step * std::lerp(low, multiple + 0.5, share);
-}
-
 double resolution_of_sorted(const std::vector<double>& sorted) {
   const std::vector<Level> levels = levels_of(sorted);
   std::vector<double> apart;
@@ -94,15 +78,16 @@ void NoiseGauge::add(std::span<const double> values) {
     if (!std::isnan(value)) {
       values_.add(value);
     }
-    const double change = value - before_[0];
+    const double change = value - value_;
     if (!std::isnan(change)) {
       changes_.add(std::abs(change));
+      const double bend = change - (value_ - before_);
+      if (!std::isnan(bend)) {
+        bends_.add(std::abs(bend));
+      }
     }
-    const double twist = value - 3.0 * before_[0] + 3.0 * before_[1] - before_[2];
-    if (!std::isnan(twist)) {
-      twists_.add(std::abs(twist));
-    }
-    before_ = {value, before_[0], before_[1]};
+    before_ = value_;
+    value_ = value;
   }
 }
 
@@ -116,7 +101,7 @@ NoiseLevel NoiseGauge::level() const {
   std::erase(changes, 0.0);
   level.repeats_share = pairs > 0.0 ? 1.0 - static_cast<double>(changes.size()) / pairs : 0.0;
   level.usual = median_of(std::move(changes));
-  level.noise = std::max(kMedianToSigma * grouped_median(twists_.values(), level.step) / std::sqrt(20.0), level.step / std::sqrt(12.0));
+  level.noise = std::max(kMedianToSigma * median_of(bends_.values()) / std::sqrt(6.0), level.step / std::sqrt(12.0));
   return level;
 }
 

@@ -1,13 +1,12 @@
 // Estimates noise and resolution of a channel without a model.
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "base/unknown.h"
 #include "recording/thinned.h"
 
 namespace heatsoak::recording {
@@ -22,8 +21,7 @@ double resolution_of(std::span<const double> values);
 struct NoiseLevel {
   double step = 0.0;   ///< resolution_of()
   double usual = 0.0;  ///< median of the nonzero changes from one sample to the next
-  /// Standard deviation of white noise, quantisation included: 1.4826 · median|third difference| / √20, but not below step/√12. Differences
-  /// that are equal because of the resolution count as spread over half a step to both sides.
+  /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12.
   double noise = 0.0;
   double repeats_share = 0.0;  ///< share of neighbouring samples that are equal
   std::size_t distinct = 0;    ///< number of distinct values in the sample
@@ -33,18 +31,19 @@ struct NoiseLevel {
 /// spaced sample.
 class NoiseGauge {
  public:
-  explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), twists_(most) {}
+  explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
 
   /// Begins a new run: differences do not extend over this point.
-  void begin_run() { before_.fill(base::kUnknown); }
+  void begin_run() { value_ = before_ = std::numeric_limits<double>::quiet_NaN(); }
   void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
 
  private:
   Thinned values_;
   Thinned changes_;
-  Thinned twists_;                                                                   ///< third differences
-  std::array<double, 3> before_ = {base::kUnknown, base::kUnknown, base::kUnknown};  ///< last three values, the last one first
+  Thinned bends_;
+  double value_ = std::numeric_limits<double>::quiet_NaN();  ///< last value
+  double before_ = value_;                                   ///< value before the last
 };
 
 /// Noise of values in order of time. NaN are skipped; differences do not extend over the ends of `runs` ([begin, end)).

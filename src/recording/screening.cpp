@@ -325,10 +325,10 @@ Line line_of(std::span<const double> values, std::span<const double> time_s, std
 }
 
 /// True if the sample is far from the lines through the three valid samples before and after and from its two neighbours, on the same side
-/// of all three. A smooth peak lies between its neighbours and the two lines.
+/// of all three, and farther than these two are from each other. A smooth peak lies between its neighbours and the two lines.
 bool is_off_slope(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, std::size_t k,
                   double least) {
-  constexpr double kOfLine_ratio = 3.0;
+  constexpr double kOfLine_ratio = 5.0;
   constexpr double kAgree_share = 0.4;
   if (k < kSide || k + kSide >= rows.size()) {
     return false;
@@ -338,9 +338,12 @@ bool is_off_slope(std::span<const double> values, std::span<const double> time_s
   const Line after = line_of(values, time_s, rows.subspan(k + 1, kSide), there_s);
   const double share = (there_s - time_s[rows[k - 1]]) / (time_s[rows[k + 1]] - time_s[rows[k - 1]]);
   const double value = values[rows[k]];
-  const auto [low, high] = std::minmax({before.there, after.there, std::lerp(values[rows[k - 1]], values[rows[k + 1]], share)});
+  const double last = values[rows[k - 1]];
+  const double next = values[rows[k + 1]];
+  const auto [low, high] = std::minmax({before.there, after.there, std::lerp(last, next, share)});
   const double distance = std::max(low - value, value - high);
-  return distance > std::max(least, kOfLine_ratio * std::max(before.deviation, after.deviation)) && high - low <= kAgree_share * distance;
+  const double usual = std::max({least, std::abs(next - last), kOfLine_ratio * std::max(before.deviation, after.deviation)});
+  return distance > usual && high - low <= kAgree_share * distance;
 }
 
 /// Omits outliers. Neighbours are the nearest valid samples, across gaps within a run.
