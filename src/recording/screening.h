@@ -16,7 +16,8 @@ namespace heatsoak::recording {
 /// - frozen: exactly one value for longer than the channel's noise allows; or one value until an isolated jump, or to the end of the run
 ///   after a slope. A constant reading of a constant temperature is valid.
 /// - saturated: a climb that stops abruptly at the largest or smallest value, or noise that is cut off there.
-/// - outlier: far from the medians of the three valid samples before and after, and on the same side of both.
+/// - outlier: far from the medians of the three valid samples before and after, or from the straight lines through them, and on the same
+///   side of both.
 /// Logs are processed in parts with the same channels; between parts only extremes and frozen values are remembered.
 class Screening {
  public:
