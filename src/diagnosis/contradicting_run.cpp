@@ -18,6 +18,9 @@ constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// moved, at most 4 otherwise (18 synthetic motors).
 constexpr double kContradicts_ratio = 5.0;
 
+/// Largest number of steps of each fit; later steps change the error of a run by less than 1 %.
+constexpr int kMostSteps = 10;
+
 /// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
 constexpr std::ptrdiff_t kMostOwnEffects = 2;
 
@@ -26,8 +29,9 @@ double ratio(const ContradictingRun& each) { return each.by_others_K / std::max(
 class Comparison {
  public:
   Comparison(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
-             const estimation::PosteriorOptions& options)
-      : fit_(fit), runs_(runs), options_(options) {
+             const std::vector<Eigen::VectorXd>& weights)
+      : fit_(fit), runs_(runs), options_(estimation::least_squares_options(fit.model, kMostSteps)) {
+    options_.weights = weights;
     const auto has_own = [&](const estimation::MeasuredRun& run) { return estimation::own_effect_count(fit.model, run) > 0; };
     if (std::ranges::any_of(runs, has_own)) {
       together_ = fit_of_runs([](const estimation::MeasuredRun&) { return true; }).fit;
@@ -36,6 +40,9 @@ class Comparison {
 
   /// Returns the sensor at which the recording contradicts the others most.
   [[nodiscard]] std::optional<ContradictingRun> of(const std::string& recording) const {
+    if (together_ && !std::isfinite(together_->evidence_nats)) {
+      return std::nullopt;
+    }
     const auto is_own = [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; };
     const Fitted rest = fit_of_runs([&](const estimation::MeasuredRun& run) { return !is_own(run); });
     if (!std::isfinite(rest.fit.evidence_nats)) {
@@ -97,14 +104,14 @@ class Comparison {
 
   const estimation::Posterior& fit_;
   const std::vector<estimation::MeasuredRun>& runs_;
-  const estimation::PosteriorOptions& options_;
+  estimation::PosteriorOptions options_;
   std::optional<estimation::Posterior> together_;  ///< fit to all runs; only if an effect belongs to some of them
 };
 
 }  // namespace
 
 std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
-                                                  const estimation::PosteriorOptions& options) {
+                                                  const std::vector<Eigen::VectorXd>& weights) {
   // Parts of one recording belong together: nobody moves a sensor during a gap of the log.
   std::vector<std::string> recordings;
   for (const estimation::MeasuredRun& run : runs) {
@@ -116,7 +123,7 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& f
   if (recordings.size() < 3) {
     return std::nullopt;
   }
-  const Comparison comparison(fit, runs, options);
+  const Comparison comparison(fit, runs, weights);
   std::vector<std::optional<ContradictingRun>> found(recordings.size());
   base::in_parallel(recordings.size(), 0, [&](std::size_t i) { found[i] = comparison.of(recordings[i]); });
   std::erase(found, std::nullopt);

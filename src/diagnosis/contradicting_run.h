@@ -21,8 +21,8 @@ struct ContradictingRun {
 
 /// Returns the run that contradicts the others most; nothing if none does, or for fewer than three recordings. A run with an effect of its
 /// own in the model contradicts only if it spoils the fit to the others.
-/// `fit`: to all runs; `options`: of the fits to some of them.
+/// `fit` is the fit to all runs; `weights` per run and sample as in estimation::PosteriorOptions.
 std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
-                                                  const estimation::PosteriorOptions& options);
+                                                  const std::vector<Eigen::VectorXd>& weights);
 
 }  // namespace heatsoak::diagnosis

@@ -49,15 +49,6 @@ void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInp
   }
 }
 
-/// Returns the recording that contradicts the others under the extended model.
-std::optional<ContradictingRun> contradiction(const attribution::Selection& selection, const std::vector<estimation::MeasuredRun>& train) {
-  // Later steps change the error of a run by less than 1 %.
-  constexpr int kMostSteps = 10;
-  estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, kMostSteps);
-  plain.weights = selection.weights;
-  return contradicting_run(selection.after, train, plain);
-}
-
 /// Scatter of the duration of a phase, from 12 diagnoses: standard deviation of its natural logarithm.
 constexpr double kSpread_sd = 0.4;
 
@@ -140,7 +131,8 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   estimation::set_columns(input.train, columns);
   progress.expect(last);
   progress.begin(kContradiction);
-  if (std::optional<ContradictingRun> found = contradiction(answer.diagnosis.selection, input.train)) {
+  const attribution::Selection& selection = answer.diagnosis.selection;
+  if (std::optional<ContradictingRun> found = contradicting_run(selection.after, input.train, selection.weights)) {
     return found;
   }
   refuse_where_nothing_follows(answer.diagnosis, input);

@@ -40,7 +40,7 @@ struct SomeRuns {
   PosteriorOptions options;
 };
 
-/// Returns the runs for which `belongs(run)` is true. `fit`: to all runs.
+/// Returns the runs for which `belongs(run)` is true. `fit` is the fit to all runs.
 template <class Predicate>
 SomeRuns some_of(const std::vector<MeasuredRun>& runs, const Posterior& fit, const PosteriorOptions& options, Predicate belongs) {
   SomeRuns part{{}, {}, options};
@@ -77,8 +77,8 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all
 /// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted. Samples
-/// with the weight 0 do not count. Call it only if can_leave_out(). The result may be ∞ if the error is above `largest_K`: then not all
-/// recordings need a fit.
+/// with the weight 0 do not count. Call it only if can_leave_out(). If the error is above `largest_K`, the result is the error or ∞,
+/// because not all recordings need a fit then.
 double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options,
                         double largest_K = std::numeric_limits<double>::infinity());
 

@@ -269,8 +269,8 @@ class Fitter {
     return next;
   }
 
-  /// `all`: of the designs, before and after. Takes `step`, or else the first of several shorter ones that decreases the cost, see
-  /// PosteriorOptions::holds_covariance. Returns false if none does.
+  /// Takes `step`, or else the first of several shorter ones that decreases the cost, see PosteriorOptions::holds_covariance. Returns false
+  /// if none does. On entry and return, `all` is the evidence of `designs`.
   bool take(RunEvidence& all, Eigen::VectorXd step, std::vector<DesignRun>& designs) {
     constexpr int kTries = 5;
     constexpr double kSmallerBox_ratio = 0.25;

@@ -51,7 +51,8 @@ PosteriorOptions least_squares_options(const Model& model, int most_steps);
 Posterior posterior_of(Model model, const std::vector<MeasuredRun>& runs, std::vector<std::vector<double>> start_C,
                        const PosteriorOptions& options);
 
-/// Continues from a fit to these runs with other options or readings. Its `fitted` saves the first simulation.
+/// Continues from a fit with other options or readings. `start.fitted` replaces the first simulation: it is that of its model and start
+/// temperatures along these runs, or empty.
 Posterior posterior_from(const Posterior& start, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options);
 
 /// Fits a trial model, whose temperatures may diverge: then the evidence is −∞ and the other results are empty. Arguments as in

@@ -153,7 +153,7 @@ std::string verdict_words(const simulate::DrivenMatch& driven) {
     case select::Verdict::infeasible:
       break;
   }
-  return fmt::format("cannot drive this match: {}. It is not too hot: ", words_of(*simulate::drive_problem(score), score));
+  return fmt::format("cannot drive this match: {}. The nominal run is not too hot: ", words_of(*simulate::drive_problem(score), score));
 }
 
 /// Formats as "(limit 155 °C)", with the peak of the upper end of the forecast band if there is one.
@@ -167,9 +167,9 @@ Text sentence(const simulate::MatchSimulation& answer, const simulate::DrivenMat
   const motor::MotorValues& limits = answer.motor.nominal;
   const bool is_driven = driven.verdict != select::Verdict::infeasible;
   const auto upper_C = [&](double simulate::DriveScore::*peak_C) {
-    return driven.upper && is_driven ? std::optional((*driven.upper).*peak_C) : std::nullopt;
+    return driven.upper ? std::optional((*driven.upper).*peak_C) : std::nullopt;
   };
-  const simulate::DriveScore& deciding = driven.verdict == select::Verdict::marginal ? *driven.upper : score;
+  const simulate::DriveScore& deciding = driven.verdict == select::Verdict::marginal ? driven.upper.value() : score;
   const bool is_of_stator = is_driven && deciding.winding_peak_C <= limits.winding_limit_C &&
                             deciding.stator_peak_C > limits.stator_limit_C.value_or(std::numeric_limits<double>::infinity());
   const std::string peak =

@@ -23,7 +23,7 @@ struct GivenInputs {
   std::map<std::string, std::string> conditions = {};
 };
 
-/// Describes the second run of a motor with a forecast band, behind a peak.
+/// Returns "with the losses at their 95th percentile", to follow a temperature of the second run of a motor with a forecast band.
 std::string upper_losses_words();
 
 Document match_document(const simulate::MatchSimulation& match, const GivenInputs& given);

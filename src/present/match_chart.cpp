@@ -94,9 +94,10 @@ std::vector<report::ChartPanel> comparison(const simulate::MatchSimulation& matc
   return panels;
 }
 
-/// Returns how one game ended. Over tolerances, the verdict may be another.
+/// Returns the outcome of one game. `evaluate` may give another verdict, because it includes tolerances.
 std::string_view outcome_of(select::Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kOutcomes{"within limits", "may be over a limit", "over a limit", "not driven"};
+  constexpr std::array<std::string_view, 4> kOutcomes{"within limits", "may exceed a limit or miss the demand", "over a limit",
+                                                      "not driven"};
   return kOutcomes.at(static_cast<std::size_t>(verdict));
 }
 
@@ -109,8 +110,10 @@ std::string verdict_and_peak(const simulate::MatchSimulation& match) {
     peak_C = std::max(peak_C, each.run.score.winding_peak_C);
     upper_C = std::max(upper_C, each.upper ? each.upper->winding_peak_C : 0.0);
   }
+  // With more heat, an empty battery may end the game earlier.
+  const bool is_range = upper_C > peak_C;
   return fmt::format("{}, winding {:.0f}{} °C (limit {:.0f} °C)", outcome_of(match.verdict()), peak_C,
-                     upper_C > 0.0 ? fmt::format(" to {:.0f}", upper_C) : "", match.motor.nominal.winding_limit_C);
+                     is_range ? fmt::format(" to {:.0f}", upper_C) : "", match.motor.nominal.winding_limit_C);
 }
 
 }  // namespace

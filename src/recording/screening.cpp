@@ -38,7 +38,7 @@ std::vector<Segment> segments_of(std::span<const double> values, std::pair<std::
   return found;
 }
 
-/// Longest constant segment before a jump that a channel of unknown noise may have, in samples.
+/// Longest constant segment before a jump that is accepted for a channel of unknown noise, in samples.
 constexpr std::size_t kLongHold = 30;
 
 /// Normal behaviour of the channel.
@@ -81,13 +81,11 @@ ChannelStatistics statistics_of(std::span<const double> values, std::span<const 
   constexpr double kLogOfThousand = 6.9;
   statistics.repeats_share = samples > 0 ? static_cast<double>(repeats) / static_cast<double>(samples) : 1.0;
   const double share = std::max({statistics.repeats_share, 0.05, repeat_probability(noise)});
-  const auto longest = [share](double nats) { return 1 + static_cast<std::size_t>(std::ceil(nats / -std::log(share))); };
   if (samples >= kEnoughSamples && share < kTooCoarse_share) {
     // n equal neighbours occur by chance in one of 1000 logs of this length: rows · share^n = 1/1000.
+    const auto longest = [share](double nats) { return 1 + static_cast<std::size_t>(std::ceil(nats / -std::log(share))); };
     statistics.longest_chance = longest(std::log(static_cast<double>(values.size())) + kLogOfThousand);
-  }
-  if (samples >= kEnoughSamples && share < 1.0) {
-    statistics.longest_before_jump = std::min(kLongHold, longest(kLogOfThousand));
+    statistics.longest_before_jump = longest(kLogOfThousand);
   }
   return statistics;
 }
@@ -252,6 +250,8 @@ void leave_out_segments(Recording& part, Channel& channel, const NoiseLevel& noi
 
 /// Number of valid samples on each side of a tested one.
 constexpr std::size_t kSide = 3;
+/// Largest difference between the predictions from both sides, as a share of the distance of an outlier.
+constexpr double kAgree_share = 0.4;
 
 /// Median of up to three samples, and their median absolute deviation.
 struct Side {
@@ -279,7 +279,6 @@ Side side_of(std::span<const double> values, std::span<const std::size_t> rows) 
 /// agree. At the ends of a run only one side exists and decides.
 bool is_spike(std::span<const double> values, std::span<const std::size_t> rows, std::size_t k, double least) {
   constexpr double kOfSlope_ratio = 3.0;
-  constexpr double kAgree_share = 0.4;
   const double value = values[rows[k]];
   const bool has_before = k >= kSide;
   const bool has_after = k + kSide < rows.size();
@@ -299,19 +298,20 @@ bool is_spike(std::span<const double> values, std::span<const std::size_t> rows,
          (value > before.median) == (value > after.median) && std::abs(before.median - after.median) <= kAgree_share * distance;
 }
 
-/// Value at some time on the straight line through three samples (median slope, Theil 1950), and the largest distance of a sample from it.
+/// Value at the tested time of the straight line through three samples (median slope, Theil 1950), and the largest distance of one of them
+/// from that line.
 struct Line {
-  double there = 0.0;
+  double value = 0.0;
   double deviation = 0.0;
 };
 
 double middle(double a, double b, double c) { return std::max(std::min(a, b), std::min(std::max(a, b), c)); }
 
-Line line_of(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, double there_s) {
+Line line_of(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, double tested_s) {
   std::array<double, kSide> ahead_s{};
   std::array<double, kSide> value{};
   for (std::size_t i = 0; i < kSide; ++i) {
-    ahead_s[i] = time_s[rows[i]] - there_s;
+    ahead_s[i] = time_s[rows[i]] - tested_s;
     value[i] = values[rows[i]];
   }
   const auto slope_per_s = [&](std::size_t i, std::size_t j) { return (value[j] - value[i]) / (ahead_s[j] - ahead_s[i]); };
@@ -319,28 +319,28 @@ Line line_of(std::span<const double> values, std::span<const double> time_s, std
   for (std::size_t i = 0; i < kSide; ++i) {
     value[i] -= usual_per_s * ahead_s[i];
   }
-  const double there = middle(value[0], value[1], value[2]);
-  const auto distance = [there](double each) { return std::abs(each - there); };
-  return {there, std::max({distance(value[0]), distance(value[1]), distance(value[2])})};
+  const double tested = middle(value[0], value[1], value[2]);
+  const auto distance = [tested](double each) { return std::abs(each - tested); };
+  return {tested, std::max({distance(value[0]), distance(value[1]), distance(value[2])})};
 }
 
-/// True if the sample is far from the lines through the three valid samples before and after and from its two neighbours, on the same side
-/// of all three, and farther than these two are from each other. A smooth peak lies between its neighbours and the two lines.
+/// True if the sample lies outside the range of three predictions: the lines through the three valid samples before and after, and the
+/// straight line between its neighbours. The distance must exceed the noise, the deviations from the lines and the difference of the
+/// neighbours. A smooth peak lies between the neighbours and the two lines.
 bool is_off_slope(std::span<const double> values, std::span<const double> time_s, std::span<const std::size_t> rows, std::size_t k,
                   double least) {
   constexpr double kOfLine_ratio = 5.0;
-  constexpr double kAgree_share = 0.4;
   if (k < kSide || k + kSide >= rows.size()) {
     return false;
   }
-  const double there_s = time_s[rows[k]];
-  const Line before = line_of(values, time_s, rows.subspan(k - kSide, kSide), there_s);
-  const Line after = line_of(values, time_s, rows.subspan(k + 1, kSide), there_s);
-  const double share = (there_s - time_s[rows[k - 1]]) / (time_s[rows[k + 1]] - time_s[rows[k - 1]]);
+  const double tested_s = time_s[rows[k]];
+  const Line before = line_of(values, time_s, rows.subspan(k - kSide, kSide), tested_s);
+  const Line after = line_of(values, time_s, rows.subspan(k + 1, kSide), tested_s);
+  const double share = (tested_s - time_s[rows[k - 1]]) / (time_s[rows[k + 1]] - time_s[rows[k - 1]]);
   const double value = values[rows[k]];
   const double last = values[rows[k - 1]];
   const double next = values[rows[k + 1]];
-  const auto [low, high] = std::minmax({before.there, after.there, std::lerp(last, next, share)});
+  const auto [low, high] = std::minmax({before.value, after.value, std::lerp(last, next, share)});
   const double distance = std::max(low - value, value - high);
   const double usual = std::max({least, std::abs(next - last), kOfLine_ratio * std::max(before.deviation, after.deviation)});
   return distance > usual && high - low <= kAgree_share * distance;

@@ -204,9 +204,7 @@ std::vector<estimation::MeasuredRun> holdout(const Runs& runs) {
 std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection) {
   std::vector<estimation::MeasuredRun> train = input.train;
   estimation::set_columns(train, selection.after.model.columns);
-  estimation::PosteriorOptions plain = estimation::least_squares_options(selection.after.model, 10);
-  plain.weights = selection.weights;
-  return diagnosis::contradicting_run(selection.after, train, plain);
+  return diagnosis::contradicting_run(selection.after, train, selection.weights);
 }
 
 Answer examine(const Case& sealed) {

@@ -186,7 +186,7 @@ TEST(MatchChart, shows_the_peak_at_the_upper_end_of_the_forecast_band) {
   match.runs.front().upper = match.runs.front().run.score;
   match.runs.front().upper->winding_peak_C = 174.0;
   const report::Chart chart = match_chart(match);
-  EXPECT_NE(chart.title.find("may be over a limit, winding 72 to 174 °C"), std::string::npos) << chart.title;
+  EXPECT_NE(chart.title.find("may exceed a limit or miss the demand, winding 72 to 174 °C"), std::string::npos) << chart.title;
   EXPECT_EQ(chart.panels[0].levels.back().y, 174.0);
   EXPECT_NE(chart.panels[0].levels.back().name.find("95th percentile"), std::string::npos);
 }

@@ -148,10 +148,11 @@ Command simulate() {
           .declare = [](CLI::App& app, Session& session) -> std::function<base::ExitCode()> {
             const auto options = std::make_shared<SimulateOptions>();
             app.add_option("--motor", options->motor, "id (see `heatsoak list motors`) or file")->type_name("M");
-            app.add_option("--model", options->model,
-                           "calibrated motor (`heatsoak calibrate --out FILE`), in place of --motor; if the file has a forecast band, a "
-                           "second run has the "
-                           "losses at their 95th percentile, and the verdict is marginal, exit 1, if only that run exceeds a limit")
+            app.add_option(
+                   "--model", options->model,
+                   "calibrated motor (`heatsoak calibrate --out FILE`), in place of --motor. If the file has a forecast band, a second "
+                   "run uses the losses at their 95th percentile; the verdict is marginal (exit 1) if only that run exceeds a limit "
+                   "or misses the demand")
                 ->type_name("FILE.toml");
             add_conditions(app, options->conditions);
             app.add_option("--robot", options->robot, "id (see `heatsoak list robots`) or file")->required()->type_name("R");
