@@ -98,8 +98,8 @@ class Comparison {
   /// Returns whether a fit to all runs follows these runs clearly worse than `usual_K`. An effect that the fit contains then stands for
   /// something that its law does not describe, such as a moved sensor.
   [[nodiscard]] bool spoils(const std::vector<estimation::MeasuredRun>& runs, double usual_K) const {
-    return std::isfinite(together_->evidence_nats) && estimation::rms_K(estimation::open_loop_errors(together_->model, runs, {})) >
-                                                          estimation::thresholds().clearly_other_ratio * usual_K;
+    return estimation::rms_K(estimation::open_loop_errors(together_->model, runs, {})) >
+           estimation::thresholds().clearly_other_ratio * usual_K;
   }
 
   const estimation::Posterior& fit_;
