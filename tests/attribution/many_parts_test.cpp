@@ -93,6 +93,19 @@ TEST(ManyParts, AreNoSensorErrorBesideTheBodyThatIsMissing) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
+/// Both heat the stator with the square of the current. Only the energy balance separates them, so some runs leave both open.
+TEST(ManyParts, AnUnevenWindingIsNoConnectionResistance) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    one.missing = std::ranges::find(subjects(), "uneven_winding", &Subject::name)->make(1.0);
+    const Answer answer = examine(one);
+    claim.expect(std::ranges::find(answer.named, "uneven_winding") != answer.named.end(), account(answer));
+    claim.expect(std::ranges::find(answer.named, "connection_resistance") == answer.named.end(), account(answer));
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
+}
+
 TEST(ManyParts, HideNothingThatWholeRunsTell) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one = loose(seed);

@@ -201,6 +201,17 @@ const std::vector<Subject> kSubjects{
          q[sleeve] -= s * 0.8 * 5.67e-8 * 0.009 * (fourth(m.part_C[sleeve]) - fourth(m.in.ambient_C));
        });
      }},
+    // Copper that lies on the tooth passes its heat on at once.
+    {"uneven_winding",
+     Visibility::visible,
+     {},
+     [](double s) {
+       return heat([s](const Moment& m, PerPart& q) {
+         q[slot] -= 0.1 * s * m.copper_loss_W;
+         q[tooth] += 0.1 * s * m.copper_loss_W;
+       });
+     },
+     0.1},
 };
 
 const std::vector<Outsider> kOutsiders{
