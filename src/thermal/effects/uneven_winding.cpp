@@ -19,16 +19,14 @@ EffectType uneven_winding() {
   using enum UnevenWinding::Parameter;
   return {
       .name = {},
-      .summary =
-          "The winding has no single temperature: copper close to the iron is cooler and passes its heat on at once, so that a share of the "
-          "copper loss acts in the stator.",
+      .summary = "The winding is not isothermal: copper close to the iron passes its heat on at once.",
       .equation = "P_winding→stator = k · P_copper",
       .reference =
           "P. H. Mellor, D. Roberts, D. R. Turner, Lumped parameter thermal model for electrical machines of TEFC design, IEE Proc. B 138 "
           "(1991): slots and end winding are separate nodes",
       .nodes = {{"winding", "winding"}, {"stator", "stator"}},
       .parameters = {{"share", "", base::Range::between(0.0, 1.0), "share of the copper loss that acts in the stator"}},
-      .typical = "0.05 to 0.3",
+      .typical = "0.05 to 0.3 of the copper loss",
       .confounded_with =
           "Confounded with connection_resistance, which adds heat at the stator and takes none from the winding: with the resistance of "
           "the winding known to a few per cent, the energy balance separates them.",
