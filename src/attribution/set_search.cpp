@@ -5,8 +5,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <set>
+#include <string_view>
 
+#include "base/parallel.h"
 #include "estimation/size_evidence.h"
 #include "estimation/thresholds.h"
 
@@ -23,6 +26,20 @@ double log_sum_nats(const std::vector<double>& nats) {
     sum += std::exp(each - most);
   }
   return std::isfinite(most) ? most + std::log(sum) : most;
+}
+
+/// Returns every set with every other member added, one at a time.
+std::vector<SetSearch::Grown> grown(const std::vector<std::vector<int>>& sets, const auto& members) {
+  std::vector<SetSearch::Grown> all;
+  for (const std::vector<int>& set : sets) {
+    for (const int member : members) {
+      if (const auto place = std::ranges::lower_bound(set, member); place == set.end() || *place != member) {
+        all.push_back({set, member});
+        all.back().members.insert(all.back().members.begin() + (place - set.begin()), member);
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -56,33 +73,32 @@ SetSearch::SetSearch(std::vector<estimation::Reduced> points, std::vector<Candid
   search();
 }
 
-double SetSearch::log_evidence(const std::vector<int>& members) const {
+double SetSearch::evaluated_nats(const std::vector<int>& members) const {
   const SetColumns set = columns_of(members, candidates_, rules_.size_sd);
   std::vector<double> nats;
   for (const estimation::Reduced& point : points_) {
     nats.push_back(point.base_nats + set_gain_nats(point, set));
   }
-  return log_sum_nats(nats) - std::log(static_cast<double>(points_.size()));
+  double sum_nats = log_sum_nats(nats) - std::log(static_cast<double>(points_.size()));
+  for (const int member : members) {
+    sum_nats += candidates_[static_cast<std::size_t>(member)].prior_nats;
+  }
+  return sum_nats;
 }
 
-double SetSearch::score(std::vector<int> members) {
-  std::ranges::sort(members);
-  const auto known = std::ranges::find(sets_, members, &EffectSet::members);
-  if (known != sets_.end()) {
-    return known->log_probability_nats;
+void SetSearch::evaluate(const std::vector<Grown>& sets) {
+  const std::size_t first = sets_.size();
+  for (const auto& [members, added] : sets) {
+    std::set<std::string_view> ids;
+    std::ranges::for_each(members, [&](int member) { ids.insert(candidates_[static_cast<std::size_t>(member)].id); });
+    if (ids.size() == members.size() && std::ranges::find(sets_, members, &EffectSet::members) == sets_.end()) {
+      sets_.push_back({members, 0.0, 0.0});
+    }
   }
-  std::set<std::string> ids;
-  const bool are_variants =
-      !std::ranges::all_of(members, [&](int member) { return ids.insert(candidates_[static_cast<std::size_t>(member)].id).second; });
-  if (are_variants) {
-    return kNone_nats;
-  }
-  double nats = log_evidence(members);
-  for (const int member : members) {
-    nats += candidates_[static_cast<std::size_t>(member)].prior_nats;
-  }
-  sets_.push_back({std::move(members), nats, 0.0});
-  return nats;
+  base::in_parallel(sets_.size() - first, 0, [&](std::size_t i) {
+    EffectSet& set = sets_[first + i];
+    set.log_probability_nats = evaluated_nats(set.members);
+  });
 }
 
 std::vector<std::vector<int>> SetSearch::best_of_size(std::size_t size, std::size_t most) const {
@@ -101,44 +117,28 @@ std::vector<std::vector<int>> SetSearch::best_of_size(std::size_t size, std::siz
 
 void SetSearch::search() {
   constexpr std::size_t kGrownFrom = 3;
-  const auto count = static_cast<int>(candidates_.size());
-  score({});
-  for (int j = 0; j < count; ++j) {
-    score({j});
-  }
+  std::vector<int> all(candidates_.size());
+  std::iota(all.begin(), all.end(), 0);
+  evaluate({Grown{}});
+  evaluate(grown({{}}, all));
   std::set<int> pool;
   for (const std::vector<int>& single : best_of_size(1, static_cast<std::size_t>(rules_.pool_of_one))) {
     pool.insert(single.front());
   }
-  const auto with = [](std::vector<int> set, int more) {
-    set.push_back(more);
-    return set;
-  };
   for (int size = 1; size < rules_.most_effects; ++size) {
     // An effect without evidence alone may explain the residual of the best sets.
+    const std::vector<Grown> larger = grown(best_of_size(static_cast<std::size_t>(size), kGrownFrom), all);
+    evaluate(larger);
     std::vector<std::pair<double, int>> additions;
-    for (const std::vector<int>& set : best_of_size(static_cast<std::size_t>(size), kGrownFrom)) {
-      for (int j = 0; j < count; ++j) {
-        if (std::ranges::find(set, j) == set.end()) {
-          additions.emplace_back(score(with(set, j)), j);
-        }
-      }
-    }
+    std::ranges::transform(larger, std::back_inserter(additions),
+                           [&](const Grown& each) { return std::pair(nats_of(each.members), each.added); });
     std::ranges::sort(additions, std::greater());
     const auto most = static_cast<std::size_t>(size == 1 ? rules_.pool_of_two : rules_.pool_of_three);
     std::size_t added = 0;
     for (const auto& [nats, j] : additions) {
-      if (added < most && pool.insert(j).second) {
-        ++added;
-      }
+      added += added < most && pool.insert(j).second ? 1 : 0;
     }
-    for (const std::vector<int>& set : best_of_size(static_cast<std::size_t>(size), static_cast<std::size_t>(rules_.best_grown))) {
-      for (const int j : pool) {
-        if (std::ranges::find(set, j) == set.end()) {
-          score(with(set, j));
-        }
-      }
-    }
+    evaluate(grown(best_of_size(static_cast<std::size_t>(size), static_cast<std::size_t>(rules_.best_grown)), pool));
   }
   rank();
 }

@@ -39,6 +39,10 @@ class SetSearch {
     Eigen::VectorXd sizes;       ///< sizes of the members, in typical sizes
     Eigen::VectorXd theta;       ///< step of θ
   };
+  struct Grown {
+    std::vector<int> members;  ///< indices, ascending
+    int added = 0;             ///< member that a smaller set lacks
+  };
   SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
   /// Replaces the linear evidence of sets by that of nonlinear fits, best set first. The linear evidence can be too high, because it was
@@ -68,8 +72,9 @@ class SetSearch {
   /// Evaluates the empty set, all single candidates and growing combinations of the best ones.
   void search();
   void rank();
-  double score(std::vector<int> members);
-  [[nodiscard]] double log_evidence(const std::vector<int>& members) const;
+  /// Evaluates those sets that are new, and no variants of one effect.
+  void evaluate(const std::vector<Grown>& sets);
+  [[nodiscard]] double evaluated_nats(const std::vector<int>& members) const;
   [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;
   /// Returns ln P of a set, not normalised; −∞ if it was not evaluated.
   [[nodiscard]] double nats_of(const std::vector<int>& members) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/parallel.h"
 #include "estimation/free_run_errors.h"
@@ -20,6 +21,9 @@ constexpr double kContradicts_ratio = 5.0;
 
 /// Largest number of steps of each fit; later steps change the error of a run by less than 1 %.
 constexpr int kMostSteps = 10;
+/// Steps after which a run agrees with the others if it has less than half of the errors that contradict. Then the ratio is 4.3 or more for
+/// moved sensors (15 synthetic cases).
+constexpr int kFewSteps = 3;
 
 /// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
 constexpr std::ptrdiff_t kMostOwnEffects = 2;
@@ -34,7 +38,7 @@ class Comparison {
     options_.weights = weights;
     const auto has_own = [&](const estimation::MeasuredRun& run) { return estimation::own_effect_count(fit.model, run) > 0; };
     if (std::ranges::any_of(runs, has_own)) {
-      together_ = fit_of_runs([](const estimation::MeasuredRun&) { return true; }).fit;
+      together_ = estimation::fit_of(estimation::some_of(runs, fit, options_, [](const auto&) { return true; }));
     }
   }
 
@@ -43,31 +47,29 @@ class Comparison {
     if (together_ && !std::isfinite(together_->evidence_nats)) {
       return std::nullopt;
     }
-    const auto is_own = [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; };
-    const Fitted rest = fit_of_runs([&](const estimation::MeasuredRun& run) { return !is_own(run); });
-    if (!std::isfinite(rest.fit.evidence_nats)) {
+    constexpr double kFar_share = 0.5;
+    const std::optional<FromOthers> soon = from_others(recording, kFewSteps);
+    if (!soon || !soon->contradicts(kFar_share)) {
       return std::nullopt;
     }
-    const estimation::Errors rest_K = estimation::open_loop_errors(rest.fit.model, rest.of.runs, {});
-    const double usual_K = estimation::rms_K(rest_K);
-    const estimation::SomeRuns own = estimation::some_of(runs_, fit_, options_, is_own);
-    const estimation::Errors by_others_K = estimation::open_loop_errors(rest.fit.model, own.runs, rest.of.runs);
-    const auto is_far = [](const auto& error) { return error.second.rmse_K > kContradicts_K; };
-    if (usual_K > kContradicts_K || std::ranges::none_of(by_others_K, is_far)) {
+    const std::optional<FromOthers> rest = from_others(recording, kMostSteps);
+    if (!rest || !rest->contradicts(1.0)) {
       return std::nullopt;
     }
-    const estimation::Posterior alone = estimation::fit_of(own);
+    const estimation::Posterior alone = estimation::fit_of(rest->own);
     if (!std::isfinite(alone.evidence_nats)) {
       return std::nullopt;
     }
-    const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, own.runs, {});
-    if (is_explained(own.runs) && !spoils(rest.of.runs, usual_K) && !spoils(own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
+    const estimation::Errors alone_K = estimation::open_loop_errors(alone.model, rest->own.runs, {});
+    const double usual_K = estimation::rms_K(rest->of_others);
+    if (is_explained(rest->own.runs) && !spoils(rest->others, usual_K) &&
+        !spoils(rest->own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
       return std::nullopt;
     }
     std::optional<ContradictingRun> worst;
-    for (const auto& [signal, error] : by_others_K) {
+    for (const auto& [signal, error] : rest->by_others) {
       const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
-                                  rest_K.contains(signal) ? rest_K.at(signal).rmse_K : error.rmse_K};
+                                  rest->of_others.contains(signal) ? rest->of_others.at(signal).rmse_K : error.rmse_K};
       if (each.by_others_K > kContradicts_K && ratio(each) > kContradicts_ratio && (!worst || ratio(each) > ratio(*worst))) {
         worst = each;
       }
@@ -76,16 +78,36 @@ class Comparison {
   }
 
  private:
-  struct Fitted {
-    estimation::SomeRuns of;
-    estimation::Posterior fit;
+  /// Errors of a recording and of the others, with parameters fitted to the others.
+  struct FromOthers {
+    estimation::SomeRuns own;
+    std::vector<estimation::MeasuredRun> others;
+    estimation::Errors by_others, of_others;
+
+    /// Returns whether these errors contradict; `share` < 1 makes the limits less strict.
+    [[nodiscard]] bool contradicts(double share) const {
+      return estimation::rms_K(of_others) < kContradicts_K / share && std::ranges::any_of(by_others, [&](const auto& each) {
+               const auto& [signal, error] = each;
+               const double usual_K = of_others.contains(signal) ? of_others.at(signal).rmse_K : 0.0;
+               return error.rmse_K > share * kContradicts_K && error.rmse_K > share * kContradicts_ratio * usual_K;
+             });
+    }
   };
 
-  template <class Predicate>
-  [[nodiscard]] Fitted fit_of_runs(Predicate belongs) const {
-    Fitted fitted{estimation::some_of(runs_, fit_, options_, belongs), {}};
-    fitted.fit = estimation::fit_of(fitted.of);
-    return fitted;
+  /// Empty if the fit fails.
+  [[nodiscard]] std::optional<FromOthers> from_others(const std::string& recording, int most_steps) const {
+    estimation::PosteriorOptions options = options_;
+    options.most_steps = most_steps;
+    const auto is_own = [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == recording; };
+    estimation::SomeRuns others = estimation::some_of(runs_, fit_, options, std::not_fn(is_own));
+    const estimation::Posterior fit = estimation::fit_of(others);
+    if (!std::isfinite(fit.evidence_nats)) {
+      return std::nullopt;
+    }
+    FromOthers errors{estimation::some_of(runs_, fit_, options, is_own), std::move(others.runs), {}, {}};
+    errors.of_others = estimation::open_loop_errors(fit.model, errors.others, {});
+    errors.by_others = estimation::open_loop_errors(fit.model, errors.own.runs, errors.others);
+    return errors;
   }
 
   /// True if the model contains a few effects of this recording alone.
