@@ -70,6 +70,7 @@ TEST(StudyWords, WrongOnesAreNamedBeforeTheStudyBegins) {
 
 TEST(StudyWords, CorrectOnesReachTheStudy) {
   EXPECT_EQ(ran({"within"}).exit_code, 0);
+  EXPECT_THAT(ran({"within"}).err, HasSubstr(base::program_version())) << "which program made the table";
   EXPECT_EQ(ran({"elsewhere", "3", "0.5", "slow"}).exit_code, 1) << "the study's own exit code";
   const StudyWords words({"folder", "12", "2.5", "slow"}, 4);
   EXPECT_EQ(words.whole(1, "CASES", 1, 300), 12U);

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/version.h"
+
 namespace heatsoak {
 
 /// The message states the word and what was expected in its place.
@@ -95,7 +97,8 @@ class StudyWords {
   std::vector<std::string> words_;
 };
 
-/// Runs `study(words)`, which returns the exit code. Returns 0 after --help, 2 after a wrong word, 70 after any other exception.
+/// Runs `study(words)`, which returns the exit code, and prints the program's version to stderr. Returns 0 after --help, 2 after a wrong
+/// word, 70 after any other exception.
 template <class Study>
 int run_study(int argc, char** argv, std::string_view usage, std::size_t most_words, const Study& study) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
@@ -104,7 +107,10 @@ int run_study(int argc, char** argv, std::string_view usage, std::size_t most_wo
     return 0;
   }
   try {
-    return study(StudyWords(std::move(words), most_words));
+    const int exit_code = study(StudyWords(std::move(words), most_words));
+    // Study programs are not part of an ordinary build: the version shows an old one.
+    fmt::print(stderr, "made with heatsoak {}\n", base::program_version());
+    return exit_code;
   } catch (const WrongWord& wrong) {
     fmt::print(stderr, "{}\n{}", wrong.what(), usage);
     return 2;
