@@ -133,10 +133,9 @@ void SetSearch::search() {
     std::ranges::transform(larger, std::back_inserter(additions),
                            [&](const Grown& each) { return std::pair(nats_of(each.members), each.added); });
     std::ranges::sort(additions, std::greater());
-    const auto most = static_cast<std::size_t>(size == 1 ? rules_.pool_of_two : rules_.pool_of_three);
-    std::size_t added = 0;
+    int free_places = size == 1 ? rules_.pool_of_two : rules_.pool_of_three;
     for (const auto& [nats, j] : additions) {
-      added += added < most && pool.insert(j).second ? 1 : 0;
+      free_places -= free_places > 0 && pool.insert(j).second ? 1 : 0;
     }
     evaluate(grown(best_of_size(static_cast<std::size_t>(size), static_cast<std::size_t>(rules_.best_grown)), pool));
   }

@@ -39,9 +39,10 @@ class SetSearch {
     Eigen::VectorXd sizes;       ///< sizes of the members, in typical sizes
     Eigen::VectorXd theta;       ///< step of θ
   };
+  /// A set, and how it was made from a smaller one.
   struct Grown {
     std::vector<int> members;  ///< indices, ascending
-    int added = 0;             ///< member that a smaller set lacks
+    int added = 0;             ///< member that the smaller set lacks
   };
   SetSearch(std::vector<estimation::Reduced> points, std::vector<CandidateRule> candidates, const SelectionRules& rules);
 
@@ -72,7 +73,7 @@ class SetSearch {
   /// Evaluates the empty set, all single candidates and growing combinations of the best ones.
   void search();
   void rank();
-  /// Evaluates those sets that are new, and no variants of one effect.
+  /// Evaluates the sets that are not evaluated yet; sets with two variants of one effect are skipped.
   void evaluate(const std::vector<Grown>& sets);
   [[nodiscard]] double evaluated_nats(const std::vector<int>& members) const;
   [[nodiscard]] std::vector<std::vector<int>> best_of_size(std::size_t size, std::size_t most) const;

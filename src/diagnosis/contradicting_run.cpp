@@ -21,9 +21,10 @@ constexpr double kContradicts_ratio = 5.0;
 
 /// Largest number of steps of each fit; later steps change the error of a run by less than 1 %.
 constexpr int kMostSteps = 10;
-/// Steps after which a run agrees with the others if it has less than half of the errors that contradict. Then the ratio is 4.3 or more for
-/// moved sensors (15 synthetic cases).
+/// Number of steps of a first fit. A run whose errors are then below `kFar_share` of the limits agrees with the others. For moved sensors,
+/// the ratio after these steps is 4.3 or more (15 synthetic cases).
 constexpr int kFewSteps = 3;
+constexpr double kFar_share = 0.5;
 
 /// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
 constexpr std::ptrdiff_t kMostOwnEffects = 2;
@@ -47,7 +48,6 @@ class Comparison {
     if (together_ && !std::isfinite(together_->evidence_nats)) {
       return std::nullopt;
     }
-    constexpr double kFar_share = 0.5;
     const std::optional<FromOthers> soon = from_others(recording, kFewSteps);
     if (!soon || !soon->contradicts(kFar_share)) {
       return std::nullopt;

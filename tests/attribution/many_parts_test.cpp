@@ -93,7 +93,7 @@ TEST(ManyParts, AreNoSensorErrorBesideTheBodyThatIsMissing) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
-/// Both heat the stator with the square of the current. Only the energy balance separates them, so some runs leave both open.
+/// Both heat the stator with the square of the current; with other thermal values they are nearly the same, so some runs leave both open.
 TEST(ManyParts, AnUnevenWindingIsNoConnectionResistance) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one;

@@ -65,13 +65,34 @@ TEST(Titles, ADiagnosisStatesItsVerdict) {
   EXPECT_EQ(pictures[0].chart.title, "Residual in K: the model lacks windage");
   EXPECT_EQ(pictures[1].chart.title, "Unknown heat in W: the model lacks windage");
   answer.diagnosis.effects[0].confusable_with = {"iron_loss_eddy"};
-  EXPECT_EQ(verdict_words(answer.diagnosis), "the model lacks windage or iron_loss_eddy, which these runs do not distinguish");
+  EXPECT_EQ(verdict_words(answer.diagnosis), "the model lacks windage or iron_loss_eddy (these runs do not distinguish them)");
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::unexplained;
   EXPECT_THAT(verdict_words(answer.diagnosis), EndsWith(", and further heat that no effect of the catalogue explains"));
   answer.diagnosis.effects.clear();
   EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("heat is missing that no effect"));
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::nothing_missing;
   EXPECT_EQ(verdict_words(answer.diagnosis), "no effect is missing");
+}
+
+/// The errors of the text are those of the motor files, so the picture must not simulate the runs again with another model.
+TEST(DiagnosisPictures, ShowThePredictionsThatWereScored) {
+  diagnosis::DiagnosisAnswer answer;
+  answer.diagnosis.before_train["winding_C"] = {};
+  const auto predicted = [](std::vector<double> predicted_C) {
+    calibration::PredictedSignal signal;
+    signal.signal = "winding_C";
+    signal.measured_C = {30.0, 32.0};
+    signal.predicted_C = std::move(predicted_C);
+    return calibration::PredictedRun{"run2", {100.0, 160.0}, {signal}};
+  };
+  answer.score.runs_before = {predicted({30.0, 27.0})};
+  answer.score.runs_after = {predicted({30.0, 31.5})};
+  const report::ChartPanel panel = diagnosis_pictures(answer).at(0).chart.panels.at(0);
+  EXPECT_EQ(panel.title, "winding; hold-out run2");
+  ASSERT_EQ(panel.curves.size(), 2U);
+  EXPECT_THAT(panel.curves[0].y, testing::ElementsAre(0.0, 5.0, testing::IsNan()));
+  EXPECT_THAT(panel.curves[1].y, testing::ElementsAre(0.0, 0.5, testing::IsNan()));
+  EXPECT_THAT(panel.curves[1].x, testing::ElementsAre(0.0, 1.0, 1.0));
 }
 
 TEST(Titles, AJerkSweepStatesTheLimitThatSettlesFirst) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 
 #include "attribution/scan_term.h"
@@ -20,9 +22,9 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 /// Places runs one after the other on the time axis, with a gap between them.
 struct Axis {
   double begin_min = 0.0;
-  void put(const estimation::MeasuredRun& run, std::vector<double>& x) const {
-    for (const double time_s : run.time_s) {
-      x.push_back(begin_min + (time_s - run.time_s.front()) / 60.0);
+  void put(const std::vector<double>& times_s, std::vector<double>& x) const {
+    for (const double time_s : times_s) {
+      x.push_back(begin_min + (time_s - times_s.front()) / 60.0);
     }
     x.push_back(x.back());
   }
@@ -37,40 +39,67 @@ std::string listed(const std::vector<std::string>& runs) {
   return names.size() <= kMostLetters ? names : fmt::format("{} run{}", runs.size(), runs.size() == 1 ? "" : "s");
 }
 
-/// The two models whose residuals are compared.
-struct Compared {
-  const estimation::Model& before;
-  const estimation::Model& after;
+/// Residuals of one signal in one run.
+struct Residuals {
+  std::string run;
+  std::vector<double> time_s, before_K, after_K;
 };
 
-/// Adds the residuals of the runs that have the signal to the panel, and their names to its title. `earlier`: runs before the hold-out
-/// runs, whose end may be the start of these; empty for training runs.
-void add_residuals(const std::string& signal, const Compared& models, const std::vector<estimation::MeasuredRun>& runs,
-                   const std::vector<estimation::MeasuredRun>& earlier, Axis& axis, report::ChartPanel& panel) {
-  const bool is_held_out = !earlier.empty();
-  const std::string suffix = is_held_out ? ", hold-out" : "";
-  report::ChartCurve old{"before" + suffix, {}, {}, 1, is_held_out}, now{"after" + suffix, {}, {}, 0, is_held_out};
-  std::vector<std::string> names;
-  for (const estimation::MeasuredRun& run : runs) {
+std::vector<Residuals> of_training(const std::string& signal, const diagnosis::Diagnosis& diagnosis,
+                                   const diagnosis::DiagnosisInput& input) {
+  std::vector<Residuals> all;
+  for (const estimation::MeasuredRun& run : input.train) {
     const auto found = std::ranges::find(run.sensors, signal, &estimation::Sensor::signal);
     if (found == run.sensors.end()) {
       continue;
     }
-    names.push_back(run.name);
-    const Eigen::Index sensor = found - run.sensors.begin();
-    for (const auto& [curve, model] : {std::pair(&old, &models.before), std::pair(&now, &models.after)}) {
-      const Eigen::VectorXd off_K = run.measured_C.col(sensor) - estimation::open_loop_C(*model, run, earlier).col(sensor);
-      curve->y.insert(curve->y.end(), off_K.begin(), off_K.end());
+    const auto off_K = [&](const estimation::Model& model) {
+      const Eigen::Index sensor = found - run.sensors.begin();
+      const Eigen::VectorXd off = run.measured_C.col(sensor) - estimation::open_loop_C(model, run, {}).col(sensor);
+      return std::vector<double>(off.begin(), off.end());
+    };
+    all.push_back({run.name, run.time_s, off_K(input.model), off_K(diagnosis.selection.after.model)});
+  }
+  return all;
+}
+
+/// Those of the predictions that were scored.
+std::vector<Residuals> of_holdout(const std::string& signal, const diagnosis::HoldoutScore& score) {
+  std::vector<Residuals> all;
+  for (std::size_t r = 0; r < score.runs_after.size(); ++r) {
+    const auto off_K = [&](const calibration::PredictedRun& run) {
+      std::vector<double> off;
+      if (const auto found = std::ranges::find(run.signals, signal, &calibration::PredictedSignal::signal); found != run.signals.end()) {
+        std::ranges::transform(found->measured_C, found->predicted_C, std::back_inserter(off), std::minus());
+      }
+      return off;
+    };
+    all.push_back({score.runs_after[r].name, score.runs_after[r].time_s, off_K(score.runs_before[r]), off_K(score.runs_after[r])});
+  }
+  std::erase_if(all, [](const Residuals& each) { return each.after_K.empty(); });
+  return all;
+}
+
+/// Adds the residuals to the panel, and the names of the runs to its title.
+void add_residuals(const std::vector<Residuals>& runs, bool is_held_out, Axis& axis, report::ChartPanel& panel) {
+  if (runs.empty()) {
+    return;
+  }
+  const std::string suffix = is_held_out ? ", hold-out" : "";
+  report::ChartCurve old{"before" + suffix, {}, {}, 1, is_held_out}, now{"after" + suffix, {}, {}, 0, is_held_out};
+  std::vector<std::string> names;
+  for (const Residuals& run : runs) {
+    names.push_back(run.run);
+    for (const auto& [curve, off_K] : {std::pair(&old, &run.before_K), std::pair(&now, &run.after_K)}) {
+      curve->y.insert(curve->y.end(), off_K->begin(), off_K->end());
       curve->y.push_back(kGap);
-      axis.put(run, curve->x);
+      axis.put(run.time_s, curve->x);
     }
     axis.begin_min = now.x.back() + 0.5;
   }
-  if (!names.empty()) {
-    panel.title += fmt::format("{} {}", is_held_out ? "; hold-out" : ": training", listed(names));
-    panel.curves.push_back(std::move(old));
-    panel.curves.push_back(std::move(now));
-  }
+  panel.title += fmt::format("{} {}", is_held_out ? "; hold-out" : ": training", listed(names));
+  panel.curves.push_back(std::move(old));
+  panel.curves.push_back(std::move(now));
 }
 
 DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosis::DiagnosisInput& input,
@@ -80,12 +109,11 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
       "before and after the diagnosis, runs one behind the other; the model runs freely from the first measured temperatures",
       "time / min",
       {}};
-  const Compared models{input.model, diagnosis.selection.after.model};
   for (const auto& [signal, error] : diagnosis.before_train) {
     report::ChartPanel panel{part_of(signal), "measured − model / K", {}, {}, {}};
     Axis axis;
-    add_residuals(signal, models, input.train, {}, axis, panel);
-    add_residuals(signal, models, score.runs, input.train, axis, panel);
+    add_residuals(of_training(signal, diagnosis, input), false, axis, panel);
+    add_residuals(of_holdout(signal, score), true, axis, panel);
     chart.panels.push_back(std::move(panel));
   }
   chart.panel_height_px = 260;

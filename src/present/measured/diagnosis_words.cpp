@@ -222,7 +222,8 @@ std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const dia
     names.insert(fmt::format("{} in {}", each.type->name, estimation::in_words(each.condition)));
   }
   const std::string whose =
-      fmt::format("{} belongs to those runs, not to the motor, and is only a note in the motor file.", fmt::join(names, " and "));
+      names.size() > 1 ? fmt::format("{} are no properties of the motor, and only notes in the motor file.", fmt::join(names, " and "))
+                       : fmt::format("{} is no property of the motor, and only a note in the motor file.", *names.begin());
   if (!score.errors.empty()) {
     return whose;  // the errors in the hold-out runs are those of the file
   }
@@ -301,17 +302,14 @@ std::string_view run_words(diagnosis::PlannedRun run) {
 
 std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> names;
-  bool is_class = false;
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
-    if (!effect.is_from_catalogue) {
-      continue;
+    if (effect.is_from_catalogue) {
+      names.push_back(effect.confusable_with.empty() ? effect.id
+                                                     : fmt::format("{} or {} (these runs do not distinguish them)", effect.id,
+                                                                   fmt::join(effect.confusable_with, " or ")));
     }
-    is_class = is_class || !effect.confusable_with.empty();
-    names.push_back(effect.confusable_with.empty() ? effect.id
-                                                   : fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, " or ")));
   }
-  const std::string lacks =
-      fmt::format("the model lacks {}{}", fmt::join(names, " and "), is_class ? ", which these runs do not distinguish" : "");
+  const std::string lacks = fmt::format("the model lacks {}", fmt::join(names, " and "));
   switch (diagnosis.verdict) {
     case diagnosis::DiagnosisVerdict::nothing_missing:
       return "no effect is missing";

@@ -28,8 +28,8 @@ EffectType connection_resistance() {
                       "resistance of both leads and their contacts, outside the winding"}},
       .typical = "5 to 20 mΩ: 0.3 to 1.3 W at 8 A",
       .confounded_with =
-          "Confounded with a lag of the stator's sensor, with driver_heat (|I|), and with uneven_winding, which takes its heat from the "
-          "winding. A 4-wire measurement of the resistance between driver and terminals separates them.",
+          "Confounded with a lag of the stator's sensor, with driver_heat (|I|), and with uneven_winding. A 4-wire measurement of the "
+          "resistance between driver and terminals separates them.",
       // 0.01 Ω · (8 A)² = 0.64 W
       .example = {.parameters = {0.01}, .at = {.current_rms_A = 8.0}, .temperature_C = {40.0}, .expected_heat_W = {0.64}},
       .laws = laws<ConnectionResistance>(),
