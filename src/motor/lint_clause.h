@@ -64,6 +64,7 @@ enum class LintWords {
   narrow_spread,
   loss_counted_twice,
   input_power_counted_twice,
+  share_counted_twice,
   effect_size,
   own_conductance,
   room_of_stator,

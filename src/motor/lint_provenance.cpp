@@ -110,11 +110,16 @@ void narrow_values(const Motor& motor, Findings& findings) {
 }
 
 void heat_counted_twice(const Motor& motor, Findings& findings) {
+  // A data sheet divides the rise of the winding by the whole copper loss. Only a fit separates the share that takes another way.
+  const auto across = motor.parameters.find("thermal_resistance_winding_stator");
+  const bool is_across_fitted = across != motor.parameters.end() && across->second.origin == base::Origin::measured;
   for (const MotorEffect& effect : motor.effects) {
     if (is_loss_of_every_motor(*effect.type)) {
       findings.warning_at(effect.parameters.front().at, LintClause{LintWords::loss_counted_twice, {effect.name, effect.type->name}});
     } else if (effect.type->name == "input_power_loss") {
       findings.warning_at(effect.parameters.front().at, LintClause{LintWords::input_power_counted_twice, {effect.name}});
+    } else if (effect.type->name == "uneven_winding" && !is_across_fitted) {
+      findings.warning_at(effect.parameters.front().at, LintClause{LintWords::share_counted_twice, {effect.name}});
     }
   }
 }

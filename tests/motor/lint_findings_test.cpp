@@ -24,15 +24,22 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Returns the findings about heat that counts twice for a motor with this effect at the stator.
-std::vector<LintFinding> counted_twice_with(std::string_view type, std::vector<double> values) {
+/// Returns the findings about heat that counts twice for a motor with this effect at its usual nodes.
+std::vector<LintFinding> counted_twice_with(std::string_view type, std::vector<double> values, bool is_fitted = false) {
   Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
+  if (is_fitted) {
+    motor.parameters.at("thermal_resistance_winding_stator").origin = base::Origin::measured;
+  }
   std::vector<base::ParameterValue> parameters;
   for (const double value : values) {
     parameters.push_back(motor.parameters.at("no_load_current"));
     parameters.back().value = value;
   }
-  motor.effects.push_back({"more", thermal::find_effect(type), {"stator"}, parameters});
+  const thermal::EffectType* const more = thermal::find_effect(type);
+  std::vector<std::string> nodes;
+  std::ranges::transform(more->nodes, std::back_inserter(nodes),
+                         [](const thermal::NodeRole& role) { return std::string(role.default_node); });
+  motor.effects.push_back({"more", more, nodes, parameters});
   std::vector<LintFinding> found = lint(motor);
   std::erase_if(found, [](const LintFinding& each) { return each.check != "heat_counted_twice"; });
   return found;
@@ -50,6 +57,13 @@ TEST(LintFindings, input_power_contains_the_losses_of_every_motor) {
   ASSERT_EQ(copper.size(), 1U);
   EXPECT_EQ(copper[0].what.words, LintWords::loss_counted_twice);
   EXPECT_TRUE(counted_twice_with("constant_heat", {1.0}).empty());
+}
+
+TEST(LintFindings, a_share_of_the_copper_loss_needs_a_fitted_thermal_resistance) {
+  const std::vector<LintFinding> found = counted_twice_with("uneven_winding", {0.1});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].what.words, LintWords::share_counted_twice);
+  EXPECT_TRUE(counted_twice_with("uneven_winding", {0.1}, true).empty());
 }
 
 /// Returns the findings about the size of an effect of a fitted motor.
