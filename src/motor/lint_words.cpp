@@ -132,8 +132,8 @@ constexpr std::array kSentences = std::to_array<Sentence>({
      "counts twice wherever the current is known; expected it only in a file for logs without a current"},
     {LintWords::share_counted_twice,
      "effects.{} takes a share of the copper loss from the winding, but the thermal resistance between winding and stator of a data sheet "
-     "refers to the whole loss, so that the winding appears cooler than it is; expected a resistance that was fitted together with the "
-     "share"},
+     "refers to the whole loss, so the share counts twice and the winding appears cooler than it is; expected a resistance that was fitted "
+     "together with the share"},
     {LintWords::effect_size,
      "effects.{}.{} of {} is {} times {}, expected {} to {} times; check its unit, or the logs and the effect if it was fitted"},
     {LintWords::own_conductance, "the {} of the motor's own conductances together"},

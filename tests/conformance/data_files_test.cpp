@@ -153,7 +153,8 @@ TEST_P(EffectLines, make_a_motor_file_that_runs) {
   const fs::path motor = folder.path() / "motor.toml";
   write(motor, content_of(kSource / "motor_db" / "maxon_ec45_flat_70w_24v.toml") + "\n" + text.substr(text.find('\n', mark + 1) + 1));
   const ProgramRun lint = run({"lint", motor.string()});
-  const bool is_doubled = GetParam() == "copper_loss" || GetParam() == "no_load_loss" || GetParam() == "input_power_loss";
+  const bool is_doubled =
+      GetParam() == "copper_loss" || GetParam() == "no_load_loss" || GetParam() == "input_power_loss" || GetParam() == "uneven_winding";
   EXPECT_EQ(lint.exit_code, is_doubled ? 1 : 0) << lint.out << lint.err << text;
   EXPECT_EQ(lint.out.find("counts twice") != std::string::npos, is_doubled) << lint.out;
   const ProgramRun evaluated = run({"evaluate", "--motors", motor.string(), "--robot", "roboteam_twente_v2024", "--duty",
