@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "estimation/smoothed_path.h"
@@ -93,32 +94,48 @@ void hide(const EqualReadings& equal, Eigen::Index sensors, double weight, Eigen
   }
 }
 
-/// Sets the weight of outliers to 0: samples beyond the gate of the filter that the next sample does not confirm.
-void hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, SensorNoise& noise) {
+/// Sets the weight of outliers to 0: samples beyond the gate of the filter that the next sample does not confirm. An outlier spoils the
+/// predictions of all sensors until the filter has forgotten the heat that it implied, so these samples wait for the next pass. Returns
+/// false if there is no outlier.
+bool hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, SensorNoise& noise) {
   const Innovations innovations = Whitening(fitted, loose, noise).innovations(fitted.residual_K);
   const double most_sd = rejected_sd();
   const Eigen::Index sensors = fitted.sensors();
-  for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
-    const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
-    for (Eigen::Index k = 0; k < run.samples(); ++k) {
+  bool is_found = false;
+  double spoilt_to_s = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    const double time_s = run.time_s[static_cast<std::size_t>(k)];
+    if (time_s <= spoilt_to_s) {
+      continue;
+    }
+    for (Eigen::Index sensor = 0; sensor < sensors; ++sensor) {
+      const double noise_K = noise.noise_K[static_cast<std::size_t>(sensor)];
       const Eigen::Index row = k * sensors + sensor;
       const double off = innovations.standardised[row];
       if (std::isnan(off) || std::abs(off) < most_sd || noise.weight[row] == 0.0) {
         continue;
       }
       const double off_K = std::abs(off) * noise_K / std::sqrt(innovations.noise_share[row]);
-      Eigen::Index next = k + 1;
-      while (next < run.samples() && (std::isnan(run.measured_C(next, sensor)) || noise.weight[next * sensors + sensor] == 0.0)) {
-        ++next;
+      Eigen::Index next = row + sensors;
+      while (next < fitted.residual_K.size() && (std::isnan(fitted.residual_K[next]) || noise.weight[next] == 0.0)) {
+        next += sensors;
       }
-      const bool is_confirmed =
-          next < run.samples() && std::abs(run.measured_C(next, sensor) - run.measured_C(k, sensor)) < thresholds().confirms_share * off_K;
+      // Residuals instead of readings, which differ by the slope, too.
+      const bool is_confirmed = next < fitted.residual_K.size() &&
+                                std::abs(fitted.residual_K[next] - fitted.residual_K[row]) < thresholds().confirms_share * off_K;
       if (!is_confirmed) {
         noise.weight[row] = 0.0;
+        is_found = true;
+        spoilt_to_s = time_s + loose.time_scale_s;
+        break;
       }
     }
   }
+  return is_found;
 }
+
+/// Largest number of passes, for outliers that follow each other closely.
+constexpr int kMostPasses = 40;
 
 }  // namespace
 
@@ -147,7 +164,8 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
       }
     }
     const LatentFlux loose{std::vector<double>(fluxes, rules.loose_ratio * unknown_W), rules.loose_time_scale_s};
-    hide_outliers(path, run, loose, noise);
+    for (int pass = 0; pass < kMostPasses && hide_outliers(path, run, loose, noise); ++pass) {
+    }
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       auto of_sensor = noise.weight(Eigen::seq(sensor, noise.weight.size() - 1, path.sensors()));
       if (of_sensor.sum() < (1.0 - thresholds().most_rejected_share) * static_cast<double>(of_sensor.size())) {
