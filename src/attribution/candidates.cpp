@@ -9,12 +9,14 @@
 #include "estimation/log_rows.h"
 #include "estimation/model_along_run.h"
 #include "estimation/spans.h"
+#include "estimation/usual_heat.h"
 
 namespace heatsoak::attribution {
 namespace {
 
 /// Heat capacity of the motors for which the catalogue gives typical sizes (about 50 W).
 constexpr double kUsualCapacity_J_per_K = 120.0;
+constexpr double kUsual_A = 8.0;  ///< their large current
 
 /// Returns the names of the signals that at least one run lacks.
 std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<estimation::MeasuredRun>& runs) {
@@ -103,60 +105,19 @@ std::vector<double> scaled(const thermal::EffectType& type, std::vector<double> 
   return parameters;
 }
 
-/// Returns the ratio of the 98th percentile of the current to 8 A, the current of the typical sizes; 1 without current.
-double current_ratio_of(const std::vector<estimation::MeasuredRun>& runs) {
-  constexpr double kUsual_A = 8.0;
-  constexpr double kTop_share = 0.98;
-  std::vector<double> current_A;
-  for (const estimation::MeasuredRun& run : runs) {
-    std::ranges::transform(run.at, std::back_inserter(current_A),
-                           [](const thermal::OperatingPoint<double>& at) { return at.current_rms_A; });
-  }
-  std::erase_if(current_A, [](double each_A) { return !(each_A > 0.0); });
-  if (current_A.empty()) {
-    return 1.0;
-  }
-  const auto top = current_A.begin() + static_cast<std::ptrdiff_t>(kTop_share * static_cast<double>(current_A.size() - 1));
-  std::ranges::nth_element(current_A, top);
-  return *top / kUsual_A;
-}
-
 MotorSize size_of(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
   double capacity_J_per_K = 0.0;
   for (int node = 0; node < model.network.state_count(); ++node) {
     capacity_J_per_K += model.values[static_cast<std::size_t>(model.network.capacity_index(node))];
   }
-  return {std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K), current_ratio_of(runs)};
-}
-
-/// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
-std::vector<estimation::Condition> conditions_of(const std::vector<estimation::MeasuredRun>& runs) {
-  std::vector<estimation::Condition> conditions;
-  std::vector<std::vector<bool>> known;
-  for (const bool named : {false, true}) {
-    for (const estimation::MeasuredRun& each : runs) {
-      for (const auto& [key, value] : each.conditions) {
-        const estimation::Condition condition{{key, value}};
-        std::vector<bool> has;
-        for (const estimation::MeasuredRun& run : runs) {
-          has.push_back(run.has(condition));
-        }
-        const bool parts = std::ranges::find(has, false) != has.end();
-        if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
-          known.push_back(std::move(has));
-          conditions.push_back(condition);
-        }
-      }
-    }
-  }
-  return conditions;
+  return {std::max(1.0, capacity_J_per_K / kUsualCapacity_J_per_K), estimation::large_current_A(runs).value_or(kUsual_A) / kUsual_A};
 }
 
 /// Adds candidates that act only in some runs and appear in no signal: airflow, constant heat, and run deviations.
 void add_conditional_candidates(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const MotorSize& size,
                                 CandidateList& list) {
   const thermal::Network& network = model.network;
-  for (const estimation::Condition& condition : conditions_of(runs)) {
+  for (const estimation::Condition& condition : estimation::conditions_of(runs)) {
     for (const std::string_view name : {"airflow", "constant_heat"}) {
       const thermal::EffectType& type = *thermal::find_effect(name);
       for (const std::string_view node : {"stator", "winding"}) {

@@ -260,26 +260,55 @@ estimation::Model Rounds::with_members(const std::vector<int>& members, const Se
 }
 
 void Rounds::follow(const Judged& judged) {
-  estimation::Posterior next = estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs,
-                                                            now_.start_C, setup_.with(setup_.grid.at(judged.best_place)));
+  const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(judged.best_place));
+  estimation::Posterior next =
+      estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
   if (!std::isfinite(next.evidence_nats)) {
     return;
   }
   now_ = std::move(next);
+  // Evidence depends on the shape of a body, so its rivals need a fitted shape, too.
+  for (const std::vector<int>& rivals : with_other_bodies()) {
+    const estimation::Model model = with_members(rivals, search_->at_best(rivals), ShapesAre::free);
+    const estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
+    if (std::isfinite(fit.evidence_nats)) {
+      take_shapes(fit.model, rivals);
+    }
+  }
+  take_shapes(now_.model, judged.best);
+  setup_.screen(now_.fitted, input_.runs);
+  out_.weights = setup_.weights;
+}
+
+std::vector<std::vector<int>> Rounds::with_other_bodies() const {
+  const EffectSet& best = search_->sets().front();
+  std::vector<std::vector<int>> sets;
+  std::set<std::string> ids;
+  for (std::size_t m = 0; m < best.members.size(); ++m) {
+    for (const int other : search_->stand_ins(best, m, std::numeric_limits<double>::infinity())) {
+      if (has_body(best.members[m]) && has_body(other) && ids.insert(id_of(other)).second) {
+        sets.push_back(best.members);
+        sets.back()[m] = other;
+        std::ranges::sort(sets.back());
+      }
+    }
+  }
+  return sets;
+}
+
+void Rounds::take_shapes(const estimation::Model& fitted, const std::vector<int>& members) {
   std::size_t instance = input_.model.network.effects().size();
-  for (const int member : judged.best) {
+  for (const int member : members) {
     if (is_parameter(member)) {
       continue;
     }
     Candidate& candidate = list_.candidates[static_cast<std::size_t>(member)];
     if (candidate.type) {
-      take_shapes(now_.model.network.effects()[instance++], candidate);
+      take_shape(fitted, fitted.network.effects()[instance++], candidate);
     } else if (candidate.sensor_type) {
-      candidate.column_at_share = away_from_zero(now_.model.theta()[size_coordinate(now_.model, candidate, {})]);
+      candidate.column_at_share = away_from_zero(fitted.theta()[size_coordinate(fitted, candidate, {})]);
     }
   }
-  setup_.screen(now_.fitted, input_.runs);
-  out_.weights = setup_.weights;
 }
 
 double Rounds::away_from_zero(double share) {
@@ -287,8 +316,8 @@ double Rounds::away_from_zero(double share) {
   return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
 }
 
-void Rounds::take_shapes(const thermal::EffectInPlace& fitted, Candidate& candidate) const {
-  const auto value_of = [&](std::size_t p) { return now_.model.values[static_cast<std::size_t>(fitted.parameter_index[p])]; };
+void Rounds::take_shape(const estimation::Model& fitted, const thermal::EffectInPlace& effect, Candidate& candidate) {
+  const auto value_of = [&](std::size_t p) { return fitted.values[static_cast<std::size_t>(effect.parameter_index[p])]; };
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
   const double share = away_from_zero(value_of(size) / candidate.typical_size());
   for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {

@@ -1,6 +1,7 @@
 // Rounds of a selection: fit the model, linearise along the fit, search sets of effects, and repeat along the path of the best set.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +36,8 @@ class Rounds {
   [[nodiscard]] bool is_parameter(int member) const { return member >= static_cast<int>(candidates().size()); }
   [[nodiscard]] Eigen::Index parameter_of(int member) const { return parameters_[static_cast<std::size_t>(member) - candidates().size()]; }
   [[nodiscard]] Eigen::Index free_count() const { return input_.model.free_count(); }
+  [[nodiscard]] bool has_body(int member) const { return std::ranges::find(bodies_, member) != bodies_.end(); }
+  [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
   void begin();
   /// Returns the base model with the parameter values of the last fit.
   [[nodiscard]] estimation::Model base_here() const { return with_values_of(input_.model, now_.model); }
@@ -58,8 +61,12 @@ class Rounds {
   void follow(const Judged& judged);
   /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
   static double away_from_zero(double share);
+  /// Returns the best set with one body replaced by one of another law, in its most probable variant: a set for each such law.
+  [[nodiscard]] std::vector<std::vector<int>> with_other_bodies() const;
+  /// Copies the fitted shapes, and the sizes of sensor errors, to the candidates.
+  void take_shapes(const estimation::Model& fitted, const std::vector<int>& members);
   /// Copies the fitted exponents, thresholds and time constants to the candidate. Its size stays the typical one.
-  void take_shapes(const thermal::EffectInPlace& fitted, Candidate& candidate) const;
+  static void take_shape(const estimation::Model& fitted, const thermal::EffectInPlace& effect, Candidate& candidate);
   /// Records the round: candidates with their single gains, the best set, and the probability of the empty set.
   void note();
   /// Records the effects whose expected gain at typical size is below `seen_nats`.

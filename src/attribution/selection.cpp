@@ -103,8 +103,6 @@ class Selector : Rounds {
   [[nodiscard]] estimation::Condition condition_of(int member) const {
     return is_parameter(member) ? estimation::Condition{} : candidates()[static_cast<std::size_t>(member)].condition;
   }
-  [[nodiscard]] const std::string& id_of(int member) const { return set_rules_[static_cast<std::size_t>(member)].id; }
-
   /// True for an effect of all runs that left-out recordings do not confirm.
   [[nodiscard]] bool needs_one_run(const Judged& judged, const EffectSet& best, std::size_t member) const {
     if (!condition_of(best.members[member]).empty()) {
@@ -206,15 +204,15 @@ class Selector : Rounds {
   /// Evidence alone is not sufficient in two cases. A calibrated model leaves unknown heat even in the runs it was fitted to. If the
   /// motor has more bodies than the model, an effect may imitate them; the names of bodies stay.
   void keep_what_helps(const EffectSet& best, Names& named) {
-    const auto has_body = [&](std::size_t m) { return std::ranges::find(bodies_, best.members[m]) != bodies_.end(); };
+    const auto is_body = [&](std::size_t m) { return has_body(best.members[m]); };
     if (input_.usual.flux_W > 0.0) {
       keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
                               [&](const Names& names) { return error_with_K(best, names); });
     }
-    if (std::ranges::any_of(named, has_body) && estimation::can_leave_out(input_.model, input_.runs)) {
+    if (std::ranges::any_of(named, is_body) && estimation::can_leave_out(input_.model, input_.runs)) {
       keep_what_reduces_error(
           best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
-          [&](const Names& names) { return left_out_error_with_K(best, names); }, has_body);
+          [&](const Names& names) { return left_out_error_with_K(best, names); }, is_body);
     }
   }
 

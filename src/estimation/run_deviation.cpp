@@ -82,4 +82,26 @@ std::string in_words(const Condition& condition) {
   return text;
 }
 
+std::vector<Condition> conditions_of(std::span<const MeasuredRun> runs) {
+  std::vector<Condition> conditions;
+  std::vector<std::vector<bool>> known;
+  for (const bool named : {false, true}) {
+    for (const MeasuredRun& each : runs) {
+      for (const auto& [key, value] : each.conditions) {
+        const Condition condition{{key, value}};
+        std::vector<bool> has;
+        for (const MeasuredRun& run : runs) {
+          has.push_back(run.has(condition));
+        }
+        const bool parts = std::ranges::find(has, false) != has.end();
+        if ((key == "run") == named && parts && std::ranges::find(known, has) == known.end()) {
+          known.push_back(std::move(has));
+          conditions.push_back(condition);
+        }
+      }
+    }
+  }
+  return conditions;
+}
+
 }  // namespace heatsoak::estimation

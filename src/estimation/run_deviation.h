@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,8 @@ using Condition = std::map<std::string, std::string>;
 
 /// Returns "cooling=fan", or the value alone for the condition "run"; conditions of several keys are separated by commas.
 std::string in_words(const Condition& condition);
+/// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
+std::vector<Condition> conditions_of(std::span<const MeasuredRun> runs);
 
 /// A kind of deviation: it multiplies parameters of the network by 1 + d in runs with a condition.
 struct RunDeviationType {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace heatsoak::estimation {
@@ -35,6 +36,21 @@ double usual_heat_W(const Model& model, std::span<const MeasuredRun> runs, const
   }
   constexpr double kLeast_W = 1e-3;
   return std::max({kLeast_W, made_J / duration_s, led_away_J / duration_s});
+}
+
+std::optional<double> large_current_A(std::span<const MeasuredRun> runs) {
+  constexpr double kTop_share = 0.98;
+  std::vector<double> current_A;
+  for (const MeasuredRun& run : runs) {
+    std::ranges::transform(run.at, std::back_inserter(current_A), &thermal::OperatingPoint<double>::current_rms_A);
+  }
+  std::erase_if(current_A, [](double each_A) { return !(each_A > 0.0); });
+  if (current_A.empty()) {
+    return std::nullopt;
+  }
+  const auto top = current_A.begin() + static_cast<std::ptrdiff_t>(kTop_share * static_cast<double>(current_A.size() - 1));
+  std::ranges::nth_element(current_A, top);
+  return *top;
 }
 
 }  // namespace heatsoak::estimation

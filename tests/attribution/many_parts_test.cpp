@@ -85,9 +85,10 @@ TEST(ManyParts, AreNoSensorErrorBesideTheBodyThatIsMissing) {
     Case one;
     one.metal_ratio = 0.05;
     one.seed = seed;
-    one.missing = std::ranges::find(subjects(), "third_node", &Subject::name)->make(1.5);
+    const Subject& body = *std::ranges::find(subjects(), "third_node", &Subject::name);
+    one.missing = body.make(1.5);
     const Answer answer = examine(one);
-    claim.expect(std::ranges::find(answer.named, "third_node") != answer.named.end(), "the body is named");
+    claim.expect(names(answer.named, body), account(answer));
     claim.expect(std::ranges::find(answer.named, "sensor_gain_winding") == answer.named.end(), account(answer));
   });
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
