@@ -1,6 +1,7 @@
 // Checks of sources, confirmations, origins and spreads, and of heat that is counted twice.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "motor/datasheet_network.h"
@@ -111,14 +112,17 @@ void narrow_values(const Motor& motor, Findings& findings) {
 
 void heat_counted_twice(const Motor& motor, Findings& findings) {
   // A data sheet divides the rise of the winding by the whole copper loss. Only a fit separates the share that takes another way.
-  const auto across = motor.parameters.find("thermal_resistance_winding_stator");
-  const bool is_across_fitted = across != motor.parameters.end() && across->second.origin == base::Origin::measured;
+  constexpr const char* kAcross = "thermal_resistance_winding_stator";
+  const auto is_measured = [](const base::ParameterValue& value) { return value.origin == base::Origin::measured; };
+  const auto across = motor.parameters.find(kAcross);
+  const bool is_across_fitted = (across != motor.parameters.end() && is_measured(across->second)) ||
+                                (motor.fit && std::ranges::find(motor.fit->parameters, kAcross) != motor.fit->parameters.end());
   for (const MotorEffect& effect : motor.effects) {
     if (is_loss_of_every_motor(*effect.type)) {
       findings.warning_at(effect.parameters.front().at, LintClause{LintWords::loss_counted_twice, {effect.name, effect.type->name}});
     } else if (effect.type->name == "input_power_loss") {
       findings.warning_at(effect.parameters.front().at, LintClause{LintWords::input_power_counted_twice, {effect.name}});
-    } else if (effect.type->name == "uneven_winding" && !is_across_fitted) {
+    } else if (effect.type->moves_copper_loss && !(is_across_fitted && is_measured(effect.parameters.front()))) {
       findings.warning_at(effect.parameters.front().at, LintClause{LintWords::share_counted_twice, {effect.name}});
     }
   }

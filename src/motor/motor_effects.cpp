@@ -85,6 +85,10 @@ void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect
     } else if (role.is_surroundings && effect.nodes.front() == role.default_node) {
       entry.reader.problem(entry.type->nodes.front().role,
                            fmt::format("'{}' is the surroundings; expected a node of the motor", role.default_node));
+    } else if (entry.type->moves_copper_loss &&
+               (effect.nodes.back() == thermal::Network::kAmbient || std::ranges::count(effect.nodes, effect.nodes.back()) > 1)) {
+      entry.reader.problem(role.role, fmt::format("'{}' cannot exchange loss with '{}'; expected two nodes of the motor",
+                                                  effect.nodes.front(), effect.nodes.back()));
     }
   }
 }
@@ -227,6 +231,10 @@ void read_effects(input::Reader& top, Motor& motor) {
       }
     }
     entry.reader.finish();
+    const auto moves_loss = [](const MotorEffect& each) { return each.type->moves_copper_loss; };
+    if (const auto first = std::ranges::find_if(effects, moves_loss); moves_loss(effect) && first != effects.end()) {
+      table->problem(effect.name, fmt::format("moves copper loss, as effects.{} does; expected one such effect", first->name));
+    }
     sound =
         sound && std::ranges::all_of(effect.nodes, [&](const std::string& node) { return std::ranges::find(known, node) != known.end(); });
     effects.push_back(std::move(effect));

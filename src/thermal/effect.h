@@ -62,6 +62,8 @@ struct EffectType {
   const Laws* laws = nullptr;  ///< never null in a registered effect
   std::vector<Signal> needs = {};
   Candidacy candidacy = {};
+  /// The effect produces no heat, but takes a share of the copper loss from its first node and adds it to the second.
+  bool moves_copper_loss = false;
   /// Signals needed with these parameters, for an effect whose signals depend on a choice; null: all of `needs`.
   std::vector<Signal> (*needs_of)(std::span<const double> parameters) = nullptr;
 

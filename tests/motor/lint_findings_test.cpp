@@ -25,15 +25,16 @@ namespace {
 using testing::HasSubstr;
 
 /// Returns the findings about heat that counts twice for a motor with this effect at its usual nodes.
-std::vector<LintFinding> counted_twice_with(std::string_view type, std::vector<double> values, bool is_fitted = false) {
+std::vector<LintFinding> counted_twice_with(std::string_view type, std::vector<double> values,
+                                            base::Origin origin_of_values = base::Origin::estimated,
+                                            base::Origin origin_of_resistance = base::Origin::datasheet) {
   Motor motor = read_motor(kSource / "motor_db/maxon_ecx_flat_42m_24v.toml");
-  if (is_fitted) {
-    motor.parameters.at("thermal_resistance_winding_stator").origin = base::Origin::measured;
-  }
+  motor.parameters.at("thermal_resistance_winding_stator").origin = origin_of_resistance;
   std::vector<base::ParameterValue> parameters;
   for (const double value : values) {
     parameters.push_back(motor.parameters.at("no_load_current"));
     parameters.back().value = value;
+    parameters.back().origin = origin_of_values;
   }
   const thermal::EffectType* const more = thermal::find_effect(type);
   std::vector<std::string> nodes;
@@ -63,7 +64,11 @@ TEST(LintFindings, a_share_of_the_copper_loss_needs_a_fitted_thermal_resistance)
   const std::vector<LintFinding> found = counted_twice_with("uneven_winding", {0.1});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].what.words, LintWords::share_counted_twice);
-  EXPECT_TRUE(counted_twice_with("uneven_winding", {0.1}, true).empty());
+  using enum base::Origin;
+  EXPECT_TRUE(counted_twice_with("uneven_winding", {0.1}, measured, measured).empty());
+  // A share that is added to a fitted file was not part of the fit.
+  EXPECT_EQ(counted_twice_with("uneven_winding", {0.1}, estimated, measured).size(), 1U);
+  EXPECT_EQ(counted_twice_with("uneven_winding", {0.1}, measured, datasheet).size(), 1U);
 }
 
 /// Returns the findings about the size of an effect of a fitted motor.

@@ -149,9 +149,9 @@ TEST_P(EveryEffect, looks_at_no_signal_but_those_it_needs) {
   }
 }
 
-/// Adds the loss of another law that the effect only books elsewhere; the two together obey the laws of thermodynamics.
-void add_loss_booked_elsewhere(const EffectType& type, const OperatingPoint<double>& at, std::vector<double>& heat_W) {
-  if (type.name == "uneven_winding") {
+/// Adds the copper loss of which the effect moves a share; the two together obey the laws of thermodynamics.
+void add_moved_loss(const EffectType& type, const OperatingPoint<double>& at, std::vector<double>& heat_W) {
+  if (type.moves_copper_loss) {
     heat_W.front() += at.copper_loss_W;
   }
 }
@@ -164,7 +164,7 @@ TEST_P(EveryEffect, neither_destroys_heat_nor_entropy) {
     OperatingPoint<double> at = random_point(chance);
     settle_neighbour(at, type(), temperature_C);
     std::vector<double> heat = heat_W(type(), at, random_parameters(chance, type()), temperature_C);
-    add_loss_booked_elsewhere(type(), at, heat);
+    add_moved_loss(type(), at, heat);
     EXPECT_GE(sum(heat), -1e-12 * size_of(heat));
     double entropy_W_per_K = 0.0;
     for (std::size_t node = 0; node < heat.size(); ++node) {
@@ -202,7 +202,7 @@ TEST_P(EveryEffect, at_one_temperature_no_heat_is_moved) {
     at.neighbour_C = at.ambient_C;
     std::vector<double> heat =
         heat_W(type(), at, random_parameters(chance, type()), std::vector<double>(type().nodes.size(), at.ambient_C));
-    add_loss_booked_elsewhere(type(), at, heat);
+    add_moved_loss(type(), at, heat);
     EXPECT_THAT(heat, testing::Each(testing::Ge(0.0)));
   }
 }

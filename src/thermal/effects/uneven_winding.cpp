@@ -42,6 +42,7 @@ EffectType uneven_winding() {
                     .variants = {{0.1}},
                     .family = "heat with current at the stator",
                     .experiment = "a 4-wire resistance of plugs and leads"},
+      .moves_copper_loss = true,
   };
 }
 
