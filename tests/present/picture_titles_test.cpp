@@ -95,6 +95,21 @@ TEST(DiagnosisPictures, ShowThePredictionsThatWereScored) {
   EXPECT_THAT(panel.curves[1].x, testing::ElementsAre(0.0, 1.0, 1.0));
 }
 
+TEST(DiagnosisPictures, ShowASignalThatOnlyHoldOutRunsHave) {
+  diagnosis::DiagnosisAnswer answer;
+  answer.diagnosis.before_train["stator_C"] = {};
+  calibration::PredictedSignal signal;
+  signal.signal = "winding_C";
+  signal.measured_C = {30.0, 32.0};
+  signal.predicted_C = {30.0, 31.0};
+  answer.score.runs_before = answer.score.runs_after = {{"run2", {100.0, 160.0}, {signal}}};
+  answer.score.errors.emplace_back().signal = "winding_C";
+  const std::vector<report::ChartPanel> panels = diagnosis_pictures(answer).at(0).chart.panels;
+  ASSERT_EQ(panels.size(), 2U);
+  EXPECT_EQ(panels[0].title, "stator");
+  EXPECT_EQ(panels[1].title, "winding; hold-out run2");
+}
+
 TEST(Titles, AJerkSweepStatesTheLimitThatSettlesFirst) {
   simulate::JerkSweep sweep{.robot = twente(), .motor = ecx_32(), .results = {}};
   for (const auto& [acceleration_m_per_s2, jerk_m_per_s3, settled_s] : {std::tuple(3.0, 5.0, 1.4),

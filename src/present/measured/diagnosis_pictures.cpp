@@ -6,6 +6,8 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <ranges>
+#include <set>
 
 #include "attribution/scan_term.h"
 #include "base/confidence.h"
@@ -106,10 +108,13 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
                            const diagnosis::HoldoutScore& score) {
   report::Chart chart{
       fmt::format("Residual in K: {}", verdict_words(diagnosis)),
-      "before and after the diagnosis, runs one behind the other; the model runs freely from the first measured temperatures",
+      "free runs from the first measured temperatures, one behind the other; training: extended model, hold-out: written motor file",
       "time / min",
       {}};
-  for (const auto& [signal, error] : diagnosis.before_train) {
+  std::set<std::string> signals;
+  std::ranges::copy(std::views::keys(diagnosis.before_train), std::inserter(signals, signals.end()));
+  std::ranges::transform(score.errors, std::inserter(signals, signals.end()), &diagnosis::HoldoutError::signal);
+  for (const std::string& signal : signals) {
     report::ChartPanel panel{part_of(signal), "measured − model / K", {}, {}, {}};
     Axis axis;
     add_residuals(of_training(signal, diagnosis, input), false, axis, panel);

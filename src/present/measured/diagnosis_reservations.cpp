@@ -72,8 +72,9 @@ std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis:
   const double train_K = estimation::rms_K(diagnosis.after_train);
   if (worst_K > kElsewhere_ratio * train_K && worst_K > train_K + 10.0 * estimation::thresholds().matters_K) {
     text += fmt::format(
-        " The error in the hold-out runs is up to {:.0f} times that in the training runs: they contain an effect that the training runs do "
-        "not show.",
+        " The error in the hold-out runs is up to {:.0f} times that in the training runs: heat acts there that the new file lacks, or "
+        "their "
+        "units, sampling or sensors differ.",
         worst_K / std::max(estimation::thresholds().matters_K, train_K));
   }
   return text;
