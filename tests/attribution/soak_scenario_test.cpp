@@ -2,6 +2,7 @@
 #include "soak_scenario.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,8 +17,8 @@
 namespace heatsoak::attribution::truth {
 namespace {
 
-/// The runs do not show whether copper loss also reaches the chassis directly, so either effect may be the named one. Holds for 8 of 8
-/// motors.
+/// The runs do not show whether copper loss also reaches the chassis directly, so either effect may be the named one, and the answer has
+/// to say so. Holds for 7 of 8 motors.
 TEST(SoakScenario, TheChassisIsNamedAndHelpsOnAnUnseenMatch) {
   const motor::Motor motor = motor::read_motor(kSource / fmt::format("motor_db/{}.toml", kSoakMotor));
   const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
@@ -34,7 +35,10 @@ TEST(SoakScenario, TheChassisIsNamedAndHelpsOnAnUnseenMatch) {
       return;
     }
     const diagnosis::FoundEffect& effect = effects.front();
-    claim.expect(effect.id == "enclosure_warm_up" || effect.id == "third_node", effect.id);
+    const std::vector<std::string> bodies{"enclosure_warm_up", "third_node"};
+    claim.expect(std::ranges::find(bodies, effect.id) != bodies.end(), effect.id);
+    claim.expect(effect.confusable_with.size() == 1U && std::ranges::find(bodies, effect.confusable_with.front()) != bodies.end(),
+                 fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, ", ")));
     claim.expect(effect.node == "stator", "node " + effect.node);
     claim.expect(effect.probability > 0.95, fmt::format("probability {}", effect.probability));
     for (const diagnosis::HoldoutError& each : answer.score.errors) {
