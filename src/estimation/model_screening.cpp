@@ -94,10 +94,24 @@ void hide(const EqualReadings& equal, Eigen::Index sensors, double weight, Eigen
   }
 }
 
-/// Sets the weight of outliers to 0: samples beyond the gate of the filter that the next sample does not confirm. An outlier spoils the
-/// predictions of all sensors until the filter has forgotten the heat that it implied, so these samples wait for the next pass. Returns
-/// false if there is no outlier.
-bool hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, SensorNoise& noise) {
+/// Returns the row of the sensor's next accepted sample, or of the one before if none follows; −1 if there is neither.
+Eigen::Index neighbour(Eigen::Index row, const Eigen::VectorXd& residual_K, Eigen::Index sensors, const Eigen::VectorXd& weight) {
+  for (const Eigen::Index step : {sensors, -sensors}) {
+    Eigen::Index other = row + step;
+    while (other >= 0 && other < residual_K.size() && (std::isnan(residual_K[other]) || weight[other] == 0.0)) {
+      other += step;
+    }
+    if (other >= 0 && other < residual_K.size()) {
+      return other;
+    }
+  }
+  return -1;
+}
+
+/// Sets the weight of outliers to 0: samples beyond the gate of the filter that their neighbour does not confirm. An outlier spoils the
+/// predictions of all sensors until the filter has forgotten the heat that it implied, so the samples of the next `spoilt_s` wait for
+/// another pass. Returns false if there is no outlier.
+bool hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, double spoilt_s, SensorNoise& noise) {
   const Innovations innovations = Whitening(fitted, loose, noise).innovations(fitted.residual_K);
   const double most_sd = rejected_sd();
   const Eigen::Index sensors = fitted.sensors();
@@ -116,17 +130,14 @@ bool hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const La
         continue;
       }
       const double off_K = std::abs(off) * noise_K / std::sqrt(innovations.noise_share[row]);
-      Eigen::Index next = row + sensors;
-      while (next < fitted.residual_K.size() && (std::isnan(fitted.residual_K[next]) || noise.weight[next] == 0.0)) {
-        next += sensors;
-      }
+      const Eigen::Index other = neighbour(row, fitted.residual_K, sensors, noise.weight);
       // Residuals instead of readings, which differ by the slope, too.
-      const bool is_confirmed = next < fitted.residual_K.size() &&
-                                std::abs(fitted.residual_K[next] - fitted.residual_K[row]) < thresholds().confirms_share * off_K;
+      const bool is_confirmed =
+          other >= 0 && std::abs(fitted.residual_K[other] - fitted.residual_K[row]) < thresholds().confirms_share * off_K;
       if (!is_confirmed) {
         noise.weight[row] = 0.0;
         is_found = true;
-        spoilt_to_s = time_s + loose.time_scale_s;
+        spoilt_to_s = time_s + spoilt_s;
         break;
       }
     }
@@ -134,8 +145,18 @@ bool hide_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const La
   return is_found;
 }
 
-/// Largest number of passes, for outliers that follow each other closely.
-constexpr int kMostPasses = 40;
+/// Hides outliers one after the other. Of very many that follow each other closely, the last ones are hidden in one pass, and possibly good
+/// samples with them.
+void hide_all_outliers(const LinearisedRun& fitted, const MeasuredRun& run, const LatentFlux& loose, SensorNoise& noise) {
+  constexpr int kMostPasses = 40;
+  int pass = 0;
+  while (pass < kMostPasses && hide_outliers(fitted, run, loose, loose.time_scale_s, noise)) {
+    ++pass;
+  }
+  if (pass == kMostPasses) {
+    hide_outliers(fitted, run, loose, 0.0, noise);
+  }
+}
 
 }  // namespace
 
@@ -164,8 +185,7 @@ std::vector<Eigen::VectorXd> weights_by_model(const std::vector<LinearisedRun>& 
       }
     }
     const LatentFlux loose{std::vector<double>(fluxes, rules.loose_ratio * unknown_W), rules.loose_time_scale_s};
-    for (int pass = 0; pass < kMostPasses && hide_outliers(path, run, loose, noise); ++pass) {
-    }
+    hide_all_outliers(path, run, loose, noise);
     for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
       auto of_sensor = noise.weight(Eigen::seq(sensor, noise.weight.size() - 1, path.sensors()));
       if (of_sensor.sum() < (1.0 - thresholds().most_rejected_share) * static_cast<double>(of_sensor.size())) {

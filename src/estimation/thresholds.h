@@ -23,7 +23,7 @@ struct Thresholds {
   // Samples.
   double wrong_rejection_share = 1e-6;  ///< probability that a good sample, or a good sequence of equal readings, is rejected
   double least_equal_count = 8.0;       ///< shortest sequence of equal readings that is tested
-  double confirms_share = 0.5;          ///< largest change of the residual to the next sample that confirms an outlier, divided by the outlier
+  double confirms_share = 0.5;          ///< largest change of the residual to the neighbour that confirms an outlier, divided by the outlier
   double most_rejected_share = 0.1;     ///< fraction of rejected samples above which the model is wrong rather than the samples
   // Fit.
   double material_share = 0.1;    ///< fraction of the mean heat from which unknown heat matters
