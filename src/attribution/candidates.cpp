@@ -35,6 +35,9 @@ bool is_in(const estimation::Model& model, const Candidate& candidate) {
     if (effect.type->name != candidate.type->name) {
       return false;
     }
+    if (effect.type->moves_copper_loss) {
+      return true;  // a motor file has at most one
+    }
     const auto term = std::ranges::find(model.conditional, effect.name, &estimation::ConditionalTerm::effect_name);
     if ((term == model.conditional.end() ? estimation::Condition{} : term->condition) != candidate.condition) {
       return false;

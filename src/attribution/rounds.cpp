@@ -185,8 +185,8 @@ Judged Rounds::judge() {
 
 void Rounds::take_best(Judged& judged, const estimation::ThetaPrior& prior) const {
   judged.best = search_->sets().front().members;
-  judged.at_best = search_->at_best(judged.best);
-  judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[judged.at_best.point]);
+  const std::size_t point = search_->at_best(judged.best).point;
+  judged.best_place = best_place(judged.designs, prior, judged.best, judged.places[point]);
 }
 
 void Rounds::add_points(const std::vector<estimation::DesignRun>& designs, const estimation::ThetaPrior& prior,
@@ -261,21 +261,23 @@ estimation::Model Rounds::with_members(const std::vector<int>& members, const Se
 
 void Rounds::follow(const Judged& judged) {
   const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(judged.best_place));
-  estimation::Posterior next =
-      estimation::try_posterior_of(with_members(judged.best, judged.at_best, ShapesAre::free), input_.runs, now_.start_C, options);
-  if (!std::isfinite(next.evidence_nats)) {
+  // Evidence depends on the shape of a body, so its rivals need a fitted shape, too. The shapes of the best set are taken last.
+  std::vector<std::vector<int>> sets = with_other_bodies();
+  sets.push_back(judged.best);
+  std::vector<estimation::Posterior> fits;
+  for (const std::vector<int>& members : sets) {
+    const estimation::Model model = with_members(members, search_->at_best(members), ShapesAre::free);
+    fits.push_back(estimation::try_posterior_of(model, input_.runs, starts_of(model), options));
+  }
+  if (!std::isfinite(fits.back().evidence_nats)) {
     return;
   }
-  now_ = std::move(next);
-  // Evidence depends on the shape of a body, so its rivals need a fitted shape, too.
-  for (const std::vector<int>& rivals : with_other_bodies()) {
-    const estimation::Model model = with_members(rivals, search_->at_best(rivals), ShapesAre::free);
-    const estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
-    if (std::isfinite(fit.evidence_nats)) {
-      take_shapes(fit.model, rivals);
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (std::isfinite(fits[i].evidence_nats)) {
+      take_shapes(fits[i].model, sets[i]);
     }
   }
-  take_shapes(now_.model, judged.best);
+  now_ = std::move(fits.back());
   setup_.screen(now_.fitted, input_.runs);
   out_.weights = setup_.weights;
 }

@@ -20,7 +20,6 @@ struct Judged {
   std::vector<estimation::DesignRun> designs;
   std::vector<estimation::FluxPlace> places;
   std::vector<int> best;  ///< members of the best set
-  SetSearch::AtBest at_best;
   estimation::FluxPlace empty_place;  ///< most probable unknown heat without any effect
   estimation::FluxPlace best_place;
 };
@@ -57,7 +56,8 @@ class Rounds {
                                                  const std::vector<int>& members, const estimation::FluxPlace& start) const;
   /// Returns the model with a set of effects, at the sizes and θ of the linear solution.
   [[nodiscard]] estimation::Model with_members(const std::vector<int>& members, const SetSearch::AtBest& at, ShapesAre shapes) const;
-  /// Refits the best set and linearises along its free run. The columns of its members get their fitted shapes and sizes.
+  /// Refits the best set, along whose free run the next round is linearised. The columns of its members, and of the bodies that may replace
+  /// one of them, get their fitted shapes and sizes.
   void follow(const Judged& judged);
   /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
   static double away_from_zero(double share);
