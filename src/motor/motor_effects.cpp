@@ -85,6 +85,8 @@ void read_nodes(Entry& entry, const std::vector<std::string>& known, MotorEffect
     } else if (role.is_surroundings && effect.nodes.front() == role.default_node) {
       entry.reader.problem(entry.type->nodes.front().role,
                            fmt::format("'{}' is the surroundings; expected a node of the motor", role.default_node));
+    } else if (entry.type->moves_copper_loss && effect.nodes.size() == 1 && effect.nodes.front() != role.default_node) {
+      entry.reader.problem(role.role, fmt::format("'{}' has no copper loss; expected '{}'", effect.nodes.front(), role.default_node));
     } else if (entry.type->moves_copper_loss &&
                (effect.nodes.back() == thermal::Network::kAmbient || std::ranges::count(effect.nodes, effect.nodes.back()) > 1)) {
       entry.reader.problem(role.role, fmt::format("'{}' cannot exchange loss with '{}'; expected two nodes of the motor",
