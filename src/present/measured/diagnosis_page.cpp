@@ -252,8 +252,8 @@ std::string diagnosis_page(const diagnosis::DiagnosisAnswer& answer, std::span<c
   text += fmt::format("<p>Fitted to {}. Hold-out runs: {}.</p>\n", base::xml_text(fmt::format("{}", fmt::join(train, ", "))),
                       holdout.empty() ? "none" : base::xml_text(fmt::format("{}", fmt::join(holdout, ", "))));
   text +=
-      "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures. Training errors are those of the "
-      "extended model, hold-out errors those of the written motor file, which lacks effects that are notes only.</p>" +
+      "<h2>Error before and after</h2><p>The model runs freely from the first measured temperatures. After the diagnosis, training errors "
+      "are those of the extended model, and hold-out errors are those of the written motor file, without effects that are only notes.</p>" +
       error_table(diagnosis, score);
   if (!diagnosis.effects.empty()) {
     text += "<h2>Effects added</h2>" + added_effects(diagnosis);

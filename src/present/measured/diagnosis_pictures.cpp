@@ -108,7 +108,7 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
                            const diagnosis::HoldoutScore& score) {
   report::Chart chart{
       fmt::format("Residual in K: {}", verdict_words(diagnosis)),
-      "free runs from the first measured temperatures, one behind the other; training: extended model, hold-out: written motor file",
+      "free runs before and after the diagnosis, one behind the other; after: training by the extended model, hold-out by the motor file",
       "time / min",
       {}};
   std::set<std::string> signals;
