@@ -10,6 +10,7 @@
 
 #include "attribution/curve.h"
 #include "base/parallel.h"
+#include "base/signals.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/size_evidence.h"
 #include "estimation/thresholds.h"
@@ -46,14 +47,16 @@ HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat
   return shown;
 }
 
-/// True if a curve over `regressor` may be multiplied by `multiplier`. A loss may depend on two operating signals. Heat that depends on a
-/// temperature is cooling, or a copper or current loss that varies with that temperature.
+/// True if a curve over `regressor` may be multiplied by `multiplier`. A loss may depend on two operating signals, but not on a signal and
+/// its magnitude. Heat that depends on a temperature is cooling, or a copper or current loss that varies with that temperature.
 bool goes_with(const Regressor& regressor, Multiplier multiplier) {
   if (regressor.kind == RegressorKind::node_temperature && multiplier == Multiplier::source) {
     return false;
   }
   const std::string_view second = spec_of(multiplier).second_signal;
-  return second.empty() || (regressor.kind == RegressorKind::operating_point && regressor.name != second);
+  const std::size_t row = base::signal_row(regressor.name);
+  return second.empty() || (regressor.kind == RegressorKind::operating_point && regressor.name != second &&
+                            (row == base::kSignals.size() || base::kSignals[row].magnitude != second));
 }
 
 /// Evidence of a curve with its most probable subset and unknown heat.

@@ -19,6 +19,9 @@
 namespace heatsoak::attribution {
 namespace {
 
+/// Size, in typical sizes, below which an effect has no shape and the column of a sensor error would vanish.
+constexpr double kLeast_share = 0.1;
+
 /// Returns the priors and families. Candidates of one type that act only in some runs, or at other nodes than the default, share the prior
 /// odds of one effect.
 std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, const SelectionRules& rules) {
@@ -308,24 +311,20 @@ void Rounds::take_shapes(const estimation::Model& fitted, const std::vector<int>
     if (candidate.type) {
       take_shape(fitted, fitted.network.effects()[instance++], candidate);
     } else if (candidate.sensor_type) {
-      candidate.column_at_share = away_from_zero(fitted.theta()[size_coordinate(fitted, candidate, {})]);
+      const double share = fitted.theta()[size_coordinate(fitted, candidate, {})];
+      candidate.column_at_share = std::copysign(std::max(kLeast_share, std::abs(share)), share);
     }
   }
-}
-
-double Rounds::away_from_zero(double share) {
-  constexpr double kLeast_share = 0.1;
-  return std::abs(share) < kLeast_share ? std::copysign(kLeast_share, share) : share;
 }
 
 void Rounds::take_shape(const estimation::Model& fitted, const thermal::EffectInPlace& effect, Candidate& candidate) {
   const auto value_of = [&](std::size_t p) { return fitted.values[static_cast<std::size_t>(effect.parameter_index[p])]; };
   const auto size = static_cast<std::size_t>(candidate.size_parameter());
-  const double share = away_from_zero(value_of(size) / candidate.typical_size());
+  const double share = value_of(size) / candidate.typical_size();
   for (std::size_t p = 0; p < candidate.parameters.size(); ++p) {
     const bool is_capacity =
         std::ranges::any_of(candidate.type->nodes, [&](const thermal::NodeRole& role) { return role.own_capacity == static_cast<int>(p); });
-    if (p != size && candidate.type->parameters[p].choices.empty()) {
+    if (p != size && candidate.type->parameters[p].choices.empty() && std::abs(share) > kLeast_share) {
       candidate.parameters[p] = is_capacity ? value_of(p) / share : value_of(p);
     }
   }

@@ -59,13 +59,11 @@ class Rounds {
   /// Refits the best set, along whose free run the next round is linearised. The columns of its members, and of the bodies that may replace
   /// one of them, get their fitted shapes and sizes.
   void follow(const Judged& judged);
-  /// Returns the size, or ±0.1 if it is closer to 0, where columns would vanish.
-  static double away_from_zero(double share);
   /// Returns the best set with one body replaced by one of another law, in its most probable variant: a set for each such law.
   [[nodiscard]] std::vector<std::vector<int>> with_other_bodies() const;
   /// Copies the fitted shapes, and the sizes of sensor errors, to the candidates.
   void take_shapes(const estimation::Model& fitted, const std::vector<int>& members);
-  /// Copies the fitted exponents, thresholds and time constants to the candidate. Its size stays the typical one.
+  /// Copies the fitted shape to the candidate, unless the effect has almost no size. Its size stays the typical one.
   static void take_shape(const estimation::Model& fitted, const thermal::EffectInPlace& effect, Candidate& candidate);
   /// Records the round: candidates with their single gains, the best set, and the probability of the empty set.
   void note();

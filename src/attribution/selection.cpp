@@ -64,8 +64,8 @@ class Selector : Rounds {
       return;
     }
     const std::vector<ScanResult>& scan = out_.rounds.back().scan;
-    if (!scan.empty() && scan.front().gain_nats > estimation::thresholds().clear_nats &&
-        estimation::is_confirmed(scan.front().left_out_gain_nats) &&
+    const double clear_nats = estimation::thresholds().clear_nats;
+    if (!scan.empty() && scan.front().gain_nats > clear_nats && estimation::is_confirmed(scan.front().left_out_gain_nats, clear_nats) &&
         // The law of an effect has another shape in every motor. A curve that only corrects it is no further effect.
         (out_.is_material() || named.empty() || beside(scan.front(), named).size() < named.size())) {
       follow_curve(judged, best, named, scan.front());
@@ -111,7 +111,7 @@ class Selector : Rounds {
     std::vector<int> others = best.members;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(member));
     const Eigen::VectorXd gain_nats = left_out_nats(judged, best.members) - left_out_nats(judged, others);
-    return gain_nats.size() > 1 && !estimation::is_confirmed(gain_nats);
+    return gain_nats.size() > 1 && !estimation::is_confirmed(gain_nats, estimation::thresholds().distinct_nats);
   }
 
   void refuse(Refusal refusal) {

@@ -107,7 +107,7 @@ HEATSOAK_SIGNAL(age, age_h, 0.0,
 
 HEATSOAK_QUANTITY(velocity, velocity_rad_per_s, 0.0,
     .signal = Signal::speed, .meaning = "signed mean of ω of the motor's shaft; a log of |ω| does not provide the sign",
-    .unit = "rad/s", .usual = 300.0, .is_motion = true,
+    .unit = "rad/s", .usual = 300.0, .magnitude = "speed", .is_motion = true,
     .curve_place = 1, .curve_meaning = "speed ω with its sign")
 
 HEATSOAK_QUANTITY(acceleration, acceleration_rad_per_s2, 0.0,

@@ -95,10 +95,11 @@ struct SignalRow {
   std::string_view unit = {};         ///< UDUNITS text
   std::optional<double> usual = {};   ///< value of a hot motor under load, in `unit`; none: the default
   AveragingRule averaging = AveragingRule::mean;
-  bool is_motion = false;          ///< depends on the motion alone; for gaps, in which motion and torque are unknown independently
-  bool is_optional = false;        ///< valid only if OperatingPoint::known has its bit, because no default is safe, as for a temperature
-  bool is_range_compared = false;  ///< `diagnose` warns if hold-out runs leave its range in the training runs
-  std::string_view column = {};    ///< log column; one row of each signal has it
+  std::string_view magnitude = {};  ///< name of the row that has its magnitude; empty: none
+  bool is_motion = false;           ///< depends on the motion alone; for gaps, in which motion and torque are unknown independently
+  bool is_optional = false;         ///< valid only if OperatingPoint::known has its bit, because no default is safe, as for a temperature
+  bool is_range_compared = false;   ///< `diagnose` warns if hold-out runs leave its range in the training runs
+  std::string_view column = {};     ///< log column; one row of each signal has it
   FromColumn from = FromColumn::computed;
   QuantityKind column_kind = QuantityKind::signal;
   std::string_view column_unit = {};     ///< UDUNITS text; empty: `unit`

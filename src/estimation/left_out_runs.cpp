@@ -87,8 +87,8 @@ std::vector<Products> by_recording(const std::vector<Products>& parts, const std
   return sums;
 }
 
-bool is_confirmed(const Eigen::VectorXd& gain_nats) {
-  return gain_nats.size() > 1 && gain_nats.sum() - gain_nats.maxCoeff() > thresholds().clear_nats;
+bool is_confirmed(const Eigen::VectorXd& gain_nats, double least_nats) {
+  return gain_nats.size() > 1 && gain_nats.sum() - gain_nats.maxCoeff() > least_nats;
 }
 
 Posterior fit_of(const SomeRuns& some) { return try_posterior_from(some.start, some.runs, some.options); }

@@ -29,9 +29,9 @@ Eigen::VectorXd left_out_nats(const std::vector<Products>& parts, const ThetaPri
   return nats;
 }
 
-/// True if the left-out recordings, without the one that gains most, together gain enough: an explanation must not depend on one recording.
-/// `gain_nats`: gain of each recording as the difference of two results of left_out_nats(). False for a single recording.
-bool is_confirmed(const Eigen::VectorXd& gain_nats);
+/// True if the left-out recordings, without the one that gains most, together gain more than `least_nats`: an explanation must not depend
+/// on one recording. `gain_nats`: gain of each recording as the difference of two results of left_out_nats(). False for a single recording.
+bool is_confirmed(const Eigen::VectorXd& gain_nats, double least_nats);
 
 /// Some of the runs, with their part of a fit to all, their weights and averaging.
 struct SomeRuns {

@@ -12,8 +12,9 @@ struct Thresholds {
   // Attribution.
   double wrong_answer_share = 0.05;  ///< allowed share of wrong decisions by evidence
   double material_K = 1.8;           ///< temperature rise of the outermost body from which unknown heat matters
-  double clear_nats = 10.0;    ///< gain in ln P from which a curve, or a sensor's drift, is accepted, and from which left-out runs confirm
-  double distinct_nats = 5.0;  ///< difference of ln P below which explanations cannot be distinguished
+  double clear_nats = 10.0;          ///< gain in ln P from which a curve, or a sensor's drift, is accepted, also in left-out recordings
+  /// Difference of ln P below which explanations cannot be distinguished, and gain in left-out recordings that confirms a name.
+  double distinct_nats = 5.0;
   double clearly_other_ratio = 1.54;  ///< ratio from which two errors, or two amounts of unknown heat, clearly differ
   double beside_unknown_share = 0.5;  ///< ratio of errors below which a name may stand beside material unknown heat
   double better_share = 0.85;         ///< ratio of errors below which a name, or another fit, is better
@@ -23,8 +24,8 @@ struct Thresholds {
   // Samples.
   double wrong_rejection_share = 1e-6;  ///< probability that a good sample, or a good sequence of equal readings, is rejected
   double least_equal_count = 8.0;       ///< shortest sequence of equal readings that is tested
-  double confirms_share = 0.5;          ///< largest change of the residual to the neighbour that confirms an outlier, divided by the outlier
-  double most_rejected_share = 0.1;     ///< fraction of rejected samples above which the model is wrong rather than the samples
+  double confirms_share = 0.5;       ///< largest change of the residual to the neighbour that confirms an outlier, divided by the outlier
+  double most_rejected_share = 0.1;  ///< fraction of rejected samples above which the model is wrong rather than the samples
   // Fit.
   double material_share = 0.1;    ///< fraction of the mean heat from which unknown heat matters
   double seen_share = 2.0 / 3.0;  ///< fraction of every run that a fit sees before it predicts the rest

@@ -67,6 +67,26 @@ TEST(Examination, CurveOverAColumnOfTheLogIsPartOfTheModel) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
+/// The speed is the magnitude of the velocity, so a curve over the velocity needs no second signal.
+TEST(Examination, ADragInOneDirectionIsACurveOverTheVelocityAlone) {
+  const Outsider& drag = *std::ranges::find(outsiders(), "drag in one direction only", &Outsider::name);
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
+    const Answer answer = examine(sealed(drag.make(1.0), seed));
+    claim.expect(names_outsider(answer, drag), account(answer));
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
+}
+
+/// Only the locked rotor of the bench run shows this effect clearly; the drives have to support it, but weakly. It often remains invisible.
+TEST(Examination, AWeakEffectIsNamedIfTheOtherRecordingsSupportIt) {
+  const Subject& connection = subject("connection_resistance");
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
+    const Answer answer = examine(sealed(connection.make(0.8), seed));
+    claim.expect(names_only(answer.named, {&connection}), account(answer));
+  });
+  EXPECT_GE(rate.right, 5) << rate.misses;
+}
+
 TEST(Examination, ConstantHeatInTheWindingOfAllRunsIsOneEffect) {
   constexpr double kHeat_W = 1.3;
   Missing missing;

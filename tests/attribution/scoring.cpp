@@ -119,6 +119,9 @@ std::string account(const Answer& answer) {
       text += fmt::format(" {}:{:.1f}", curve_name(selection, round.scan[i]), round.scan[i].gain_nats);
     }
   }
+  for (const Refusal& each : selection.refused) {
+    text += fmt::format(" | refused {}, reason {}, P {:.2f}", each.id, static_cast<int>(each.reason), each.probability);
+  }
   for (const diagnosis::Unexplained& heat : answer.diagnosis.unexplained) {
     text += fmt::format(" | unexplained {}~{} {:.2f} W", heat.node, fmt::join(heat.signals, "/"), heat.rms_W);
   }

@@ -40,17 +40,19 @@ TEST(LeftOutNats, AreThoseOfTheNormalDistribution) {
   EXPECT_NEAR(gains_nats(parts)[0], predicted_nats + 0.5 * 4.0, 1e-6);
 }
 
+constexpr double kLeast_nats = 10.0;
+
 TEST(LeftOutNats, OneRecordingAloneConfirmsNothing) {
-  EXPECT_FALSE(is_confirmed(gains_nats({reading(1000.0, 1.0)})));
-  EXPECT_FALSE(is_confirmed(gains_nats({reading(1000.0, 1.0), reading(1000.0, 0.0), reading(1000.0, 0.0)})));
-  EXPECT_TRUE(is_confirmed(gains_nats({reading(1000.0, 1.0), reading(1000.0, 1.0), reading(1000.0, 0.9)})));
+  EXPECT_FALSE(is_confirmed(gains_nats({reading(1000.0, 1.0)}), kLeast_nats));
+  EXPECT_FALSE(is_confirmed(gains_nats({reading(1000.0, 1.0), reading(1000.0, 0.0), reading(1000.0, 0.0)}), kLeast_nats));
+  EXPECT_TRUE(is_confirmed(gains_nats({reading(1000.0, 1.0), reading(1000.0, 1.0), reading(1000.0, 0.9)}), kLeast_nats));
 }
 
 TEST(LeftOutNats, ARecordingWithoutInformationNeitherConfirmsNorObjects) {
   const std::vector<Products> both{reading(1000.0, 1.0), reading(1000.0, 1.0)};
   const std::vector<Products> more{reading(1000.0, 1.0), reading(1000.0, 1.0), reading(0.01, 0.0)};
-  EXPECT_TRUE(is_confirmed(gains_nats(both)));
-  EXPECT_TRUE(is_confirmed(gains_nats(more)));
+  EXPECT_TRUE(is_confirmed(gains_nats(both), kLeast_nats));
+  EXPECT_TRUE(is_confirmed(gains_nats(more), kLeast_nats));
 }
 
 TEST(LeftOutNats, PartsOfOneRecordingAreLeftOutTogether) {

@@ -36,7 +36,7 @@ const std::vector<Hardship>& hardships() {
 }
 
 struct Marks {
-  Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_confounded, pairs_right, one_of_pair,
+  Share false_alarm, says_nothing, detected, right_of_detected, right_of_visible, among_confounded, pairs_right, pairs_listed, one_of_pair,
       outsiders_right, left_unnamed, given_a_name, interval_covers, near_floor;
   Share grown, grown_plainly;  ///< diagnoses after which the error on unseen runs is larger, and larger by 0.1 K
   struct Harder {
@@ -175,6 +175,7 @@ void examine_pairs(Marks& marks, int number) {
     const Answer answer = examined(marks, sealed_case(together(a->make(size_a), b->make(size_b)), seed));
     const bool is_right = names_only(answer.named, {a, b});
     marks.pairs_right.add(is_right);
+    marks.pairs_listed.add(answer.named.size() == 2 && mentions(answer, *a) && mentions(answer, *b));
     marks.one_of_pair.add(names(answer.named, *a) || names(answer.named, *b));
     say(fmt::format("{} x {:.2f} + {} x {:.2f}", a->name, size_a, b->name, size_b), seed, answer, is_right);
   }
@@ -270,6 +271,7 @@ void print_table(Marks& marks) {
   row("single effects: right, of those visible", ">= 95 %", in_words(marks.right_of_visible));
   row("single effects: named or confounded with it, of those detected", ">= 99 %", in_words(marks.among_confounded));
   row("pairs: both right, nothing else", ">= 90 %", in_words(marks.pairs_right));
+  row("pairs: two names, each right or listed as indistinguishable from it", "", in_words(marks.pairs_listed));
   row("pairs: at least one right", "", in_words(marks.one_of_pair));
   row("outside the catalogue: unexplained, node and input signal right", ">= 90 %", in_words(marks.outsiders_right));
   row("heat that no signal follows: given a name", "<= 5 %", in_words(marks.given_a_name));
