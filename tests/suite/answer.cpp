@@ -82,13 +82,16 @@ std::string signal_word(const std::string& name_in_answer) {
     lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   const auto has = [&](const char* word) { return lower.find(word) != std::string::npos; };
-  for (const char* word : {"vehicle_speed", "vehicle", "fan", "neighbour", "modulation", "accel", "bus"}) {
+  for (const char* word : {"vehicle_speed", "vehicle", "fan", "neighbour", "modulation", "acceleration", "bus"}) {
     if (has(word)) {
       return word == std::string("vehicle") ? "vehicle_speed" : word;
     }
   }
   if (has("duty")) {
     return "modulation";
+  }
+  if (has("velocity")) {
+    return "speed";  // with its sign
   }
   if (has("power") || (has("current") && has("speed")) || has("torque")) {
     return "power";

@@ -38,8 +38,8 @@ struct Term {
 /// Terms in the order of the answer: the effects, then a curve of `unexplained` that is not among them.
 std::vector<Term> terms_of(const Answer& answer);
 
-/// The suite's word for an input signal: speed, current, power, vehicle_speed, fan, neighbour, modulation, bus, winding, stator, ambient,
-/// time.
+/// The suite's word for an input signal: speed, current, power, acceleration, vehicle_speed, fan, neighbour, modulation, bus, winding,
+/// stator, ambient, time.
 std::string signal_word(const std::string& name_in_answer);
 
 /// True effect of a motor.

@@ -172,6 +172,8 @@ TEST(Score, ErrorsGrowOnlyByATenthOfAKelvinAndFivePercent) {
 TEST(Score, SignalsOfAnswersAreRecognised) {
   EXPECT_EQ(signal_word("|speed|"), "speed");
   EXPECT_EQ(signal_word("speed_rad_per_s"), "speed");
+  EXPECT_EQ(signal_word("velocity"), "speed");
+  EXPECT_EQ(signal_word("acceleration"), "acceleration");
   EXPECT_EQ(signal_word("vehicle_speed_m_per_s"), "vehicle_speed");
   EXPECT_EQ(signal_word("|current|"), "current");
   EXPECT_EQ(signal_word("current times speed"), "power");
