@@ -209,6 +209,7 @@ class Program : public testing::Test {
       std::ofstream(folder_ / "null_01" / name) << "";
     }
   }
+  ~Program() override { std::filesystem::remove_all(folder_); }
 
   Answer answer_of_script(const std::string& script) {
     const std::filesystem::path program = folder_ / "program's.sh";
