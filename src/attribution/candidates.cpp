@@ -18,17 +18,6 @@ namespace {
 constexpr double kUsualCapacity_J_per_K = 120.0;
 constexpr double kUsual_A = 8.0;  ///< their large current
 
-/// Returns the names of the signals that at least one run lacks.
-std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<estimation::MeasuredRun>& runs) {
-  std::vector<std::string_view> names;
-  for (const thermal::Signal signal : needs) {
-    if (std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return !run.has(signal); })) {
-      names.push_back(estimation::words_of(signal));
-    }
-  }
-  return names;
-}
-
 bool is_in(const estimation::Model& model, const Candidate& candidate) {
   const thermal::Network& network = model.network;
   return std::ranges::any_of(network.effects(), [&](const thermal::EffectInPlace& effect) {
@@ -68,18 +57,26 @@ std::vector<std::string> usual_nodes(const thermal::Network& network, const ther
   return nodes;
 }
 
-/// Returns all node assignments to try. A one-node effect is tried at every node with a heat capacity. In a network of two nodes it is
-/// tried at its default node, unless its candidacy allows any. Other effects use their default nodes.
-std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type) {
+/// Returns all node assignments to try: the default nodes, and any other first node if the candidacy allows it. A one-node effect is tried
+/// at every node of a larger network than winding and stator, a body only at nodes with a sensor.
+std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type,
+                                                 const std::vector<estimation::MeasuredRun>& runs) {
   std::vector<std::vector<std::string>> all;
-  if (std::vector<std::string> usual = usual_nodes(network, type); !usual.empty()) {
-    all.push_back(std::move(usual));
+  std::vector<std::string> usual = usual_nodes(network, type);
+  if (!usual.empty()) {
+    all.push_back(usual);
   }
   const bool moves =
-      type.nodes.size() == 1 && !type.nodes.front().own_capacity && (type.candidacy.is_anywhere || network.state_count() > 2);
+      type.candidacy.is_anywhere || (type.nodes.size() == 1 && !type.nodes.front().own_capacity && network.state_count() > 2);
+  usual.resize(type.nodes.size());
   for (int node = 0; moves && node < network.state_count(); ++node) {
-    if (network.node_name(node) != type.nodes.front().default_node) {
-      all.push_back({std::string(network.node_name(node))});
+    const auto is_seen = [&](const estimation::MeasuredRun& run) { return run.sensor_at(network.node_name(node)).has_value(); };
+    if (network.node_name(node) != type.nodes.front().default_node && (usual.size() == 1 || std::ranges::any_of(runs, is_seen))) {
+      std::vector<std::string>& moved = all.emplace_back(usual);
+      moved.front() = network.node_name(node);
+      for (std::size_t role = 1; role < moved.size(); ++role) {
+        moved[role] += type.nodes[role].own_capacity ? "_" + moved.front() : "";
+      }
     }
   }
   return all;
@@ -169,11 +166,11 @@ void add_network_candidates(const estimation::Model& model, const std::vector<es
     if (!type.candidacy.size_parameter) {
       continue;
     }
-    if (const std::vector<std::string_view> names = lacking(type.needs, runs); !names.empty()) {
+    if (const std::vector<std::string_view> names = estimation::lacking(type.needs, runs); !names.empty()) {
       list.not_judged.push_back({std::string(type.name), {names.begin(), names.end()}});
       continue;
     }
-    for (const std::vector<std::string>& nodes : placements(model.network, type)) {
+    for (const std::vector<std::string>& nodes : placements(model.network, type, runs)) {
       int variant = 0;
       for (const std::vector<double>& parameters : type.candidacy.variants) {
         Candidate candidate{
@@ -228,9 +225,7 @@ void extend(Extended& extended, const Candidate& candidate, std::size_t own) {
 
 }  // namespace
 
-bool Candidate::is_rare() const {
-  return type && condition.empty() && nodes.size() == 1 && nodes.front() != type->nodes.front().default_node;
-}
+bool Candidate::is_rare() const { return type && condition.empty() && nodes.front() != type->nodes.front().default_node; }
 
 int Candidate::size_parameter() const { return type ? type->candidacy.size_parameter.value() : 0; }
 

@@ -11,6 +11,7 @@
 #include "attribution/curve.h"
 #include "base/parallel.h"
 #include "base/signals.h"
+#include "estimation/heat_response.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/size_evidence.h"
 #include "estimation/thresholds.h"
@@ -22,30 +23,6 @@ namespace {
 using HatColumns = Eigen::Matrix<double, Eigen::Dynamic, kKnots + 1, Eigen::RowMajor>;
 /// Prior standard deviation of a curve's heat, as a fraction of the mean heat.
 constexpr double kUsual_share = 0.3;
-
-/// Returns the response of the sensors to `heat_W` (intervals × hats), constant over each interval. The heat enters the node with index
-/// `flux` and leaves the node with index `other`; empty: no node.
-HatColumns response(const estimation::LinearisedRun& run, const HatColumns& heat_W, int flux, std::optional<int> other) {
-  HatColumns shown = HatColumns::Zero(run.residual_K.size(), heat_W.cols());
-  HatColumns state = HatColumns::Zero(run.states, heat_W.cols());
-  HatColumns next = state;
-  for (Eigen::Index k = 0; k + 1 < run.samples(); ++k) {
-    const double* const transition = run.transition.data() + k * run.states * run.states;
-    const double* const injection = run.injection.data() + k * run.states * run.fluxes;
-    for (Eigen::Index i = 0; i < run.states; ++i) {
-      const double gain_K_per_W = injection[i * run.fluxes + flux] - (other ? injection[i * run.fluxes + *other] : 0.0);
-      next.row(i) = gain_K_per_W * heat_W.row(k);
-      for (Eigen::Index j = 0; j < run.states; ++j) {
-        next.row(i) += transition[i * run.states + j] * state.row(j);
-      }
-    }
-    state.swap(next);
-    for (Eigen::Index sensor = 0; sensor < run.sensors(); ++sensor) {
-      shown.row((k + 1) * run.sensors() + sensor) = state.row(run.sensor_node[static_cast<std::size_t>(sensor)]);
-    }
-  }
-  return shown;
-}
 
 /// True if a curve over `regressor` may be multiplied by `multiplier`. A loss may depend on two operating signals, but not on a signal and
 /// its magnitude. Heat that depends on a temperature is cooling, or a copper or current loss that varies with that temperature.
@@ -250,7 +227,7 @@ class Scanner {
     const int into = flux_of(*input_.model, family.term.node).value();
     const std::optional<int> other = family.term.other.empty() ? std::nullopt : flux_of(*input_.model, family.term.other);
     for (std::size_t r = 0; r < input_.runs->size(); ++r) {
-      family.shown.push_back(response((*input_.designs)[r].run, heats_W(family, r), into, other));
+      family.shown.push_back(estimation::heat_response((*input_.designs)[r].run, heats_W(family, r), into, other));
     }
   }
 

@@ -379,8 +379,13 @@ estimation::Posterior Rounds::more_predictive(estimation::Posterior fit, const s
 }
 
 void Rounds::own_parameters(const Judged& judged) {
-  const estimation::Model start = base_here();
-  out_.before = estimation::posterior_of(start, input_.runs, starts_of(start), setup_.around(judged.empty_place));
+  const estimation::Model here = base_here();
+  const estimation::PosteriorOptions options = setup_.around(judged.empty_place);
+  out_.before = estimation::try_posterior_of(here, input_.runs, starts_of(here), options);
+  if (!std::isfinite(out_.before.evidence_nats)) {
+    // With the parameters of a fit with effects, the model without them may run away.
+    out_.before = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), options);
+  }
   out_.own = out_.before;
   std::vector<int> doubted;
   std::ranges::copy_if(judged.best, std::back_inserter(doubted), [&](int member) { return is_parameter(member); });

@@ -67,7 +67,8 @@ class Selector : Rounds {
     const double clear_nats = estimation::thresholds().clear_nats;
     if (!scan.empty() && scan.front().gain_nats > clear_nats && estimation::is_confirmed(scan.front().left_out_gain_nats, clear_nats) &&
         // The law of an effect has another shape in every motor. A curve that only corrects it is no further effect.
-        (out_.is_material() || named.empty() || beside(scan.front(), named).size() < named.size())) {
+        (out_.is_material() || named.empty() || beside(scan.front(), named).size() < named.size()) &&
+        helps_beside_body(best, beside(scan.front(), named), scan.front())) {
       follow_curve(judged, best, named, scan.front());
       return;
     }
@@ -149,6 +150,24 @@ class Selector : Rounds {
     return named;
   }
 
+  /// Beside a body, a curve may imitate further bodies. It must then reduce the error of left-out recordings, as a name must. A curve over
+  /// time cannot be tested.
+  [[nodiscard]] bool helps_beside_body(const EffectSet& best, const Names& stay, const ScanResult& curve) const {
+    if (!has_any_body(best, stay) || !estimation::can_leave_out(input_.model, input_.runs)) {
+      return true;
+    }
+    const estimation::Posterior without = fit_with(best, stay, setup_.plain());
+    const auto curved = with_curve(without.model, curve, out_.regressors[static_cast<std::size_t>(curve.term.regressor)]);
+    if (!curved) {
+      return false;
+    }
+    std::vector<estimation::MeasuredRun> runs = input_.runs;
+    estimation::set_columns(runs, curved->columns);
+    const estimation::Posterior with = estimation::try_posterior_of(*curved, runs, without.start_C, setup_.plain());
+    const double largest_K = estimation::thresholds().better_share * estimation::left_out_error_K(without, runs, setup_.plain());
+    return estimation::left_out_error_K(with, runs, setup_.plain(), largest_K) < largest_K;
+  }
+
   /// Replaces the effects that the curve explains better by the curve.
   void follow_curve(const Judged& judged, const EffectSet& best, const Names& named, const ScanResult& curve) {
     Names stay = beside(curve, named);
@@ -201,18 +220,21 @@ class Selector : Rounds {
     return estimation::left_out_error_K(fit_with(best, names, setup_.plain()), input_.runs, setup_.plain());
   }
 
+  [[nodiscard]] bool has_any_body(const EffectSet& best, const Names& named) const {
+    return std::ranges::any_of(named, [&](std::size_t m) { return has_body(best.members[m]); });
+  }
+
   /// Evidence alone is not sufficient in two cases. A calibrated model leaves unknown heat even in the runs it was fitted to. If the
   /// motor has more bodies than the model, an effect may imitate them; the names of bodies stay.
   void keep_what_helps(const EffectSet& best, Names& named) {
-    const auto is_body = [&](std::size_t m) { return has_body(best.members[m]); };
     if (input_.usual.flux_W > 0.0) {
       keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
                               [&](const Names& names) { return error_with_K(best, names); });
     }
-    if (std::ranges::any_of(named, is_body) && estimation::can_leave_out(input_.model, input_.runs)) {
+    if (has_any_body(best, named) && estimation::can_leave_out(input_.model, input_.runs)) {
       keep_what_reduces_error(
           best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
-          [&](const Names& names) { return left_out_error_with_K(best, names); }, is_body);
+          [&](const Names& names) { return left_out_error_with_K(best, names); }, [&](std::size_t m) { return has_body(best.members[m]); });
     }
   }
 
@@ -228,13 +250,14 @@ class Selector : Rounds {
       if (stays(named[i])) {
         continue;
       }
+      // Left-out recordings show nothing about a recording with effects of its own, so these are removed together.
+      const estimation::Condition own = condition_of(best.members[named[i]]);
       Names others = named;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      const double without_K = error_K_with(others);
-      if (!(error_K < error_share * without_K)) {
+      std::erase_if(others, [&](std::size_t m) { return m == named[i] || (!own.empty() && condition_of(best.members[m]) == own); });
+      if (!(error_K < error_share * error_K_with(others))) {
         refuse({.id = id_of(best.members[named[i]]), .reason = why_not});
-        named = std::move(others);
-        error_K = without_K;
+        named.erase(named.begin() + static_cast<std::ptrdiff_t>(i));
+        error_K = error_K_with(named);
       }
     }
   }

@@ -94,7 +94,7 @@ class Comparison {
     }
   };
 
-  /// Empty if the fit fails.
+  /// Empty if the fit or a simulation fails.
   [[nodiscard]] std::optional<FromOthers> from_others(const std::string& recording, int most_steps) const {
     estimation::PosteriorOptions options = options_;
     options.most_steps = most_steps;
@@ -104,10 +104,13 @@ class Comparison {
     if (!std::isfinite(fit.evidence_nats)) {
       return std::nullopt;
     }
-    FromOthers errors{estimation::some_of(runs_, fit_, options, is_own), std::move(others.runs), {}, {}};
-    errors.of_others = estimation::open_loop_errors(fit.model, errors.others, {});
-    errors.by_others = estimation::open_loop_errors(fit.model, errors.own.runs, errors.others);
-    return errors;
+    estimation::SomeRuns own = estimation::some_of(runs_, fit_, options, is_own);
+    std::optional<estimation::Errors> by_others = estimation::try_open_loop_errors(fit.model, own.runs, others.runs);
+    if (!by_others) {
+      return std::nullopt;
+    }
+    estimation::Errors of_others = estimation::open_loop_errors(fit.model, others.runs, {});
+    return FromOthers{std::move(own), std::move(others.runs), std::move(*by_others), std::move(of_others)};
   }
 
   /// True if the model contains a few effects of this recording alone.

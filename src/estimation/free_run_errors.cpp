@@ -76,6 +76,15 @@ Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs
   return errors;
 }
 
+std::optional<Errors> try_open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs,
+                                           const std::vector<MeasuredRun>& before_them) {
+  try {
+    return open_loop_errors(model, runs, before_them);
+  } catch (const base::Failure&) {
+    return std::nullopt;
+  }
+}
+
 double rms_K(const Errors& errors) {
   double squares_K2 = 0.0;
   for (const auto& [signal, error] : errors) {

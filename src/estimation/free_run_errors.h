@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ using Errors = std::map<std::string, ErrorOfSignal>;
 /// Simulates each run freely from its first measured temperatures and returns the errors by signal. A run that continues one of
 /// `before_them` within Thresholds::slow_s starts from the simulated end of that run; later samples are not used.
 Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
+/// As open_loop_errors(); empty if a simulation fails. Parameters that were fitted to other runs may let the copper loss run away.
+std::optional<Errors> try_open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs,
+                                           const std::vector<MeasuredRun>& before_them);
 /// Returns the predicted readings of one run in °C, n × sensors.
 Eigen::MatrixXd open_loop_C(const Model& model, const MeasuredRun& run, const std::vector<MeasuredRun>& before_it);
 /// Returns the RMS over all signals, with equal weights.

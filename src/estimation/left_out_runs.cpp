@@ -135,7 +135,8 @@ double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& ru
     const Posterior found = fit_of(others);
     if (std::isfinite(found.evidence_nats)) {
       const SomeRuns own = some_of(accepted, fit, options, is_own);
-      squares_K2[i] = std::pow(rms_K(open_loop_errors(found.model, own.runs, others.runs)), 2);
+      const std::optional<Errors> errors = try_open_loop_errors(found.model, own.runs, others.runs);
+      squares_K2[i] = errors ? std::pow(rms_K(*errors), 2) : kInfinite;
     }
     sum_K2 += squares_K2[i];
   });

@@ -70,6 +70,16 @@ double of(const std::vector<double>* values, std::size_t row) { return values ? 
 
 std::string_view words_of(thermal::Signal signal) { return thermal::quantity_of(signal).lacking; }
 
+std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<MeasuredRun>& runs) {
+  std::vector<std::string_view> names;
+  for (const thermal::Signal signal : needs) {
+    if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
+      names.push_back(words_of(signal));
+    }
+  }
+  return names;
+}
+
 bool has_values(const recording::Channel* channel) {
   return channel && std::ranges::any_of(channel->values, [](double value) { return !std::isnan(value); });
 }

@@ -15,6 +15,8 @@ namespace heatsoak::estimation {
 using recording::column_of;
 /// Returns the name of a signal in sentences, for example "torque and speed".
 std::string_view words_of(thermal::Signal signal);
+/// Returns the names of the signals that at least one run lacks.
+std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<MeasuredRun>& runs);
 
 /// Returns whether the channel exists and has a value in any row.
 bool has_values(const recording::Channel* channel);

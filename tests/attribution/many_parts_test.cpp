@@ -107,6 +107,35 @@ TEST(ManyParts, AnUnevenWindingIsNoConnectionResistance) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
+TEST(ManyParts, ABodyAtTheWindingIsFoundThere) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    one.missing.heat.emplace_back([](const Moment& now, PerPart& q) {
+      const double in_W = 0.4 * (now.part_C[slot] - now.part_C[lump_a]);
+      q[slot] -= in_W;
+      q[lump_a] += in_W;
+    });
+    one.missing.lump_capacity_J_per_K[lump_a] = 40.0;
+    const Answer answer = examine(one);
+    const auto is_body_there = [](const diagnosis::FoundEffect& each) { return each.id == "third_node" && each.node == "winding"; };
+    claim.expect(answer.named.size() == 1 && std::ranges::any_of(answer.diagnosis.effects, is_body_there), account(answer));
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
+}
+
+/// A sensor at the stator does not show a body at the winding.
+TEST(ManyParts, ABodyAtTheWindingNeedsASensorThere) {
+  for (const bool has_winding_sensor : {true, false}) {
+    Case one;
+    one.has_winding_sensor = has_winding_sensor;
+    const diagnosis::DiagnosisInput input = question(one, record(one));
+    const std::vector<Candidate> candidates = candidates_for(input.model, input.train).candidates;
+    const auto is_body = [](const Candidate& each) { return each.id == "third_node@winding"; };
+    EXPECT_EQ(std::ranges::any_of(candidates, is_body), has_winding_sensor);
+  }
+}
+
 TEST(ManyParts, HideNothingThatWholeRunsTell) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one = loose(seed);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/diagnostic.h"
+#include "estimation/free_run_errors.h"
 #include "runs_for_tests.h"
 
 namespace heatsoak::estimation {
@@ -40,6 +41,13 @@ TEST(Posterior, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanatio
   const Posterior none = try_posterior_of(model, {hour_at(1e3)}, start_C, options);
   EXPECT_TRUE(std::isinf(none.evidence_nats) && none.evidence_nats < 0.0);
   EXPECT_EQ(none.flux.rms_W, options.flux.rms_W);
+}
+
+TEST(FreeRunErrors, OfARunThatRunsAwayAreNotKnown) {
+  const Model model = two_node_model({}, 1.0);
+  EXPECT_TRUE(try_open_loop_errors(model, {hour_at(0.5)}, {}));
+  EXPECT_THROW(open_loop_errors(model, {hour_at(1e3)}, {}), base::Failure);
+  EXPECT_FALSE(try_open_loop_errors(model, {hour_at(1e3)}, {}));
 }
 
 }  // namespace

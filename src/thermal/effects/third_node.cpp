@@ -42,9 +42,10 @@ EffectType third_node() {
       .needs = {},
       .candidacy = {.size_parameter = conductance,
                     // A leak of 0 could not be fitted, because shape parameters are fitted in logarithms; hardly any body has none.
-                    .variants = {{0.15, 0.1, 60.0}, {0.15, 0.1, 300.0}, {0.15, 0.6, 300.0}},
+                    .variants = {{0.15, 0.1, 60.0}, {0.15, 0.1, 300.0}, {0.15, 0.6, 300.0}, {1.0, 0.02, 60.0}},
                     .family = "a body that the motor warms",
-                    .experiment = "an hour of soak at constant load and two hours of cool-down"},
+                    .experiment = "an hour of soak at constant load and two hours of cool-down",
+                    .is_anywhere = true},
   };
 }
 
