@@ -40,14 +40,17 @@ bool is_in(const estimation::Model& model, const Candidate& candidate) {
   });
 }
 
-/// Returns the default nodes of the roles, with an unused name for a node that the effect adds. Empty if a node is missing.
-std::vector<std::string> usual_nodes(const thermal::Network& network, const thermal::EffectType& type) {
+/// Returns the nodes of the roles: `first` for the first role, the default nodes for the others, and an unused name for a node that the
+/// effect adds. Empty if a node is missing.
+std::vector<std::string> nodes_with(const thermal::Network& network, const thermal::EffectType& type, std::string_view first) {
   std::vector<std::string> nodes;
   for (const thermal::NodeRole& role : type.nodes) {
-    std::string node(role.default_node);
+    std::string node(nodes.empty() ? first : role.default_node);
     if (role.own_capacity) {
+      const std::string name = first == type.nodes.front().default_node ? node : fmt::format("{}_{}", node, first);
+      node = name;
       for (int number = 2; network.find_node(node); ++number) {
-        node = fmt::format("{}_{}", role.default_node, number);
+        node = fmt::format("{}_{}", name, number);
       }
     } else if (!network.find_node(node)) {
       return {};
@@ -58,27 +61,20 @@ std::vector<std::string> usual_nodes(const thermal::Network& network, const ther
 }
 
 /// Returns all node assignments to try: the default nodes, and any other first node if the candidacy allows it. A one-node effect is tried
-/// at every node of a larger network than winding and stator, a body only at nodes with a sensor.
+/// at every node of a larger network than winding and stator. A body is tried at another node only if a run has a sensor there.
 std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type,
                                                  const std::vector<estimation::MeasuredRun>& runs) {
-  std::vector<std::vector<std::string>> all;
-  std::vector<std::string> usual = usual_nodes(network, type);
-  if (!usual.empty()) {
-    all.push_back(usual);
-  }
+  std::vector<std::vector<std::string>> all{nodes_with(network, type, type.nodes.front().default_node)};
   const bool moves =
       type.candidacy.is_anywhere || (type.nodes.size() == 1 && !type.nodes.front().own_capacity && network.state_count() > 2);
-  usual.resize(type.nodes.size());
   for (int node = 0; moves && node < network.state_count(); ++node) {
-    const auto is_seen = [&](const estimation::MeasuredRun& run) { return run.sensor_at(network.node_name(node)).has_value(); };
-    if (network.node_name(node) != type.nodes.front().default_node && (usual.size() == 1 || std::ranges::any_of(runs, is_seen))) {
-      std::vector<std::string>& moved = all.emplace_back(usual);
-      moved.front() = network.node_name(node);
-      for (std::size_t role = 1; role < moved.size(); ++role) {
-        moved[role] += type.nodes[role].own_capacity ? "_" + moved.front() : "";
-      }
+    const std::string_view name = network.node_name(node);
+    const auto is_seen = [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); };
+    if (name != type.nodes.front().default_node && (type.nodes.size() == 1 || std::ranges::any_of(runs, is_seen))) {
+      all.push_back(nodes_with(network, type, name));
     }
   }
+  std::erase_if(all, [](const std::vector<std::string>& nodes) { return nodes.empty(); });
   return all;
 }
 

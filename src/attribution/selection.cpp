@@ -150,8 +150,8 @@ class Selector : Rounds {
     return named;
   }
 
-  /// Beside a body, a curve may imitate further bodies. It must then reduce the error of left-out recordings, as a name must. A curve over
-  /// time cannot be tested.
+  /// Beside a body, a curve may imitate further bodies. It must then reduce the error of left-out recordings, as a name must. False for a
+  /// curve over time, which no model contains.
   [[nodiscard]] bool helps_beside_body(const EffectSet& best, const Names& stay, const ScanResult& curve) const {
     if (!has_any_body(best, stay) || !estimation::can_leave_out(input_.model, input_.runs)) {
       return true;

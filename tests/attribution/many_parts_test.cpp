@@ -124,6 +124,20 @@ TEST(ManyParts, ABodyAtTheWindingIsFoundThere) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
+TEST(ManyParts, ABodyAtTheWindingGetsAnUnusedName) {
+  const Case one;
+  diagnosis::DiagnosisInput input = question(one, record(one));
+  input.model.network.add_node("third_node_winding", 10.0);
+  int bodies = 0;
+  for (const Candidate& each : candidates_for(input.model, input.train).candidates) {
+    if (each.id == "third_node@winding") {
+      EXPECT_EQ(each.nodes.at(1), "third_node_winding_2");
+      ++bodies;
+    }
+  }
+  EXPECT_GT(bodies, 0);
+}
+
 /// A sensor at the stator does not show a body at the winding.
 TEST(ManyParts, ABodyAtTheWindingNeedsASensorThere) {
   for (const bool has_winding_sensor : {true, false}) {

@@ -57,6 +57,7 @@ TEST(Titles, ADiagnosisStatesItsVerdict) {
   diagnosis::DiagnosisAnswer answer;
   diagnosis::FoundEffect effect;
   effect.id = "windage";
+  effect.node = "stator";
   effect.is_from_catalogue = true;
   answer.diagnosis.effects = {effect};
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::effect_found;
@@ -66,6 +67,11 @@ TEST(Titles, ADiagnosisStatesItsVerdict) {
   EXPECT_EQ(pictures[1].chart.title, "Unknown heat in W: the model lacks windage");
   answer.diagnosis.effects[0].confusable_with = {"iron_loss_eddy"};
   EXPECT_EQ(verdict_words(answer.diagnosis), "the model lacks windage or iron_loss_eddy (these runs do not distinguish them)");
+  effect.id = "third_node";
+  diagnosis::FoundEffect elsewhere = effect;
+  elsewhere.node = "winding";
+  answer.diagnosis.effects = {effect, elsewhere};
+  EXPECT_EQ(verdict_words(answer.diagnosis), "the model lacks third_node at the stator and third_node at the winding");
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::unexplained;
   EXPECT_THAT(verdict_words(answer.diagnosis), EndsWith(", and further heat that no effect of the catalogue explains"));
   answer.diagnosis.effects.clear();

@@ -18,6 +18,7 @@
 #include "present/measured/diagnosis_reservations.h"
 #include "present/measured/log.h"
 #include "present/measured/run_words.h"
+#include "thermal/effect.h"
 
 namespace heatsoak::present {
 namespace {
@@ -298,15 +299,25 @@ std::string_view run_words(diagnosis::PlannedRun run) {
   return {};
 }
 
+/// Returns the id, with the node if it is not the effect's default node or if the id occurs twice: a motor may lack a body at the stator
+/// and one at the winding.
+std::string name_with_place(const diagnosis::FoundEffect& effect, const std::vector<diagnosis::FoundEffect>& all) {
+  const thermal::EffectType* const type = thermal::find_effect(effect.id);
+  const bool is_elsewhere = type && !type->nodes.empty() && type->nodes.front().default_node != effect.node;
+  const bool is_twice = std::ranges::count(all, effect.id, &diagnosis::FoundEffect::id) > 1;
+  return is_elsewhere || is_twice ? fmt::format("{} at the {}", effect.id, effect.node) : effect.id;
+}
+
 }  // namespace
 
 std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     if (effect.is_from_catalogue) {
-      names.push_back(effect.confusable_with.empty() ? effect.id
-                                                     : fmt::format("{} or {} (these runs do not distinguish them)", effect.id,
-                                                                   fmt::join(effect.confusable_with, " or ")));
+      names.push_back(effect.confusable_with.empty()
+                          ? name_with_place(effect, diagnosis.effects)
+                          : fmt::format("{} or {} (these runs do not distinguish them)", name_with_place(effect, diagnosis.effects),
+                                        fmt::join(effect.confusable_with, " or ")));
     }
   }
   const std::string lacks = fmt::format("the model lacks {}", fmt::join(names, " and "));
