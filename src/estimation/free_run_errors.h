@@ -23,7 +23,8 @@ using Errors = std::map<std::string, ErrorOfSignal>;
 /// Simulates each run freely from its first measured temperatures and returns the errors by signal. A run that continues one of
 /// `before_them` within Thresholds::slow_s starts from the simulated end of that run; later samples are not used.
 Errors open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs, const std::vector<MeasuredRun>& before_them);
-/// As open_loop_errors(); empty if a simulation fails. Parameters that were fitted to other runs may let the copper loss run away.
+/// Returns the result of open_loop_errors(), or nothing if a simulation fails. With parameters that were fitted to other runs, the copper
+/// loss may run away.
 std::optional<Errors> try_open_loop_errors(const Model& model, const std::vector<MeasuredRun>& runs,
                                            const std::vector<MeasuredRun>& before_them);
 /// Returns the predicted readings of one run in °C, n × sensors.
