@@ -60,17 +60,19 @@ std::vector<std::string> nodes_with(const thermal::Network& network, const therm
   return nodes;
 }
 
-/// Returns all node assignments to try: the default nodes, and any other first node if the candidacy allows it. A one-node effect is tried
-/// at every node of a larger network than winding and stator. A body is tried at another node only if a run has a sensor there.
+/// Returns all node assignments to try: the default nodes, winding and stator for effects that may be anywhere, and the file's bodies.
+/// Where no sensor is, heat cannot be told from another size of a body, nor a body from another one.
 std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type,
                                                  const std::vector<estimation::MeasuredRun>& runs) {
+  constexpr int kSheetNodes = 2;  // winding and stator
   std::vector<std::vector<std::string>> all{nodes_with(network, type, type.nodes.front().default_node)};
-  const bool moves =
-      type.candidacy.is_anywhere || (type.nodes.size() == 1 && !type.nodes.front().own_capacity && network.state_count() > 2);
-  for (int node = 0; moves && node < network.state_count(); ++node) {
+  for (int node = 0; node < network.state_count(); ++node) {
     const std::string_view name = network.node_name(node);
-    const auto is_seen = [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); };
-    if (name != type.nodes.front().default_node && (type.nodes.size() == 1 || std::ranges::any_of(runs, is_seen))) {
+    const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); });
+    const bool is_one_node = type.nodes.size() == 1 && !type.nodes.front().own_capacity;
+    const bool is_possible = node < kSheetNodes ? type.candidacy.is_anywhere && (is_one_node || is_seen)
+                                                : (type.candidacy.is_anywhere || is_one_node) && is_seen;
+    if (is_possible && name != type.nodes.front().default_node) {
       all.push_back(nodes_with(network, type, name));
     }
   }
@@ -112,14 +114,10 @@ MotorSize size_of(const estimation::Model& model, const std::vector<estimation::
 /// Adds candidates that act only in some runs and appear in no signal: airflow, constant heat, and run deviations.
 void add_conditional_candidates(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs, const MotorSize& size,
                                 CandidateList& list) {
-  const thermal::Network& network = model.network;
   for (const estimation::Condition& condition : estimation::conditions_of(runs)) {
     for (const std::string_view name : {"airflow", "constant_heat"}) {
       const thermal::EffectType& type = *thermal::find_effect(name);
       for (const std::string_view node : {"stator", "winding"}) {
-        if (!network.find_node(node)) {
-          continue;
-        }
         Candidate candidate;
         candidate.type = &type;
         candidate.id = fmt::format("{}@{} in {}", name, node, estimation::in_words(condition));
@@ -137,7 +135,7 @@ void add_conditional_candidates(const estimation::Model& model, const std::vecto
     for (const estimation::RunDeviationType& type : estimation::all_run_deviations()) {
       const bool is_there =
           std::ranges::any_of(model.deviations, [&](const estimation::RunDeviation& each) { return each.is_same(&type, condition); });
-      if (!is_there && !type.places_in(network).empty()) {
+      if (!is_there && !type.places_in(model.network).empty()) {
         list.candidates.push_back({.deviation_type = &type,
                                    .id = fmt::format("{} in {}", type.name, estimation::in_words(condition)),
                                    .parameters = {type.usual},

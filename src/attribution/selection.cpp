@@ -74,7 +74,7 @@ class Selector : Rounds {
     }
     if (out_.is_material()) {
       keep_what_reduces_error(best, named, estimation::thresholds().beside_unknown_share, RefusalReason::unknown_heat_remains,
-                              [&](const Names& names) { return error_with_K(best, names); });
+                              [&](const Names& names, const Names&) { return error_with_K(best, names); });
       out_.is_unexplained = named.empty();
     }
     keep_what_helps(best, named);
@@ -179,8 +179,7 @@ class Selector : Rounds {
       }
     }
     keep_what_helps(best, stay);
-    build(judged, best, stay);
-    add_curve(judged, curve);
+    build(judged, best, stay, &curve);
     out_.is_unexplained = true;
   }
 
@@ -215,9 +214,12 @@ class Selector : Rounds {
     out_.after.covariance = input_.model.full_prior().precision.inverse();
   }
 
-  /// Returns the RMS error in K of left-out recordings with some names, by plain fits; ∞ if a fit fails.
-  [[nodiscard]] double left_out_error_with_K(const EffectSet& best, const Names& names) const {
-    return estimation::left_out_error_K(fit_with(best, names, setup_.plain()), input_.runs, setup_.plain());
+  /// Returns the RMS error in K of left-out recordings, by plain fits; ∞ if one fails. Recordings with an own effect of `all` do not count.
+  [[nodiscard]] double left_out_error_with_K(const EffectSet& best, const Names& names, const Names& all) const {
+    const std::vector<int> kept = kept_members(best, all);
+    const estimation::Model usual_in = with_members(kept, search_->at_best(kept), ShapesAre::held);
+    return estimation::left_out_error_K(fit_with(best, names, setup_.plain()), input_.runs, setup_.plain(),
+                                        std::numeric_limits<double>::infinity(), &usual_in);
   }
 
   [[nodiscard]] bool has_any_body(const EffectSet& best, const Names& named) const {
@@ -225,39 +227,40 @@ class Selector : Rounds {
   }
 
   /// Evidence alone is not sufficient in two cases. A calibrated model leaves unknown heat even in the runs it was fitted to. If the
-  /// motor has more bodies than the model, an effect may imitate them; the names of bodies stay.
+  /// motor has more bodies than the model, an effect may imitate them, and a body several others; bodies must not predict clearly worse.
   void keep_what_helps(const EffectSet& best, Names& named) {
     if (input_.usual.flux_W > 0.0) {
       keep_what_reduces_error(best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
-                              [&](const Names& names) { return error_with_K(best, names); });
+                              [&](const Names& names, const Names&) { return error_with_K(best, names); });
     }
     if (has_any_body(best, named) && estimation::can_leave_out(input_.model, input_.runs)) {
       keep_what_reduces_error(
           best, named, estimation::thresholds().better_share, RefusalReason::hardly_improves_whole_runs,
-          [&](const Names& names) { return left_out_error_with_K(best, names); }, [&](std::size_t m) { return has_body(best.members[m]); });
+          [&](const Names& names, const Names& all) { return left_out_error_with_K(best, names, all); },
+          1.0 / estimation::thresholds().better_share);
     }
   }
 
-  /// Keeps only names without which the error grows to more than 1/`error_share` times its value, and those for which `stays` is true.
-  void keep_what_reduces_error(
-      const EffectSet& best, Names& named, double error_share, RefusalReason why_not,
-      const std::function<double(const Names&)>& error_K_with,
-      const std::function<bool(std::size_t)>& stays = [](std::size_t) { return false; }) {
-    // The name with the weakest evidence is examined first.
-    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
-    double error_K = std::ranges::all_of(named, stays) ? 0.0 : error_K_with(named);
+  /// Keeps only names without which the error grows to more than 1/`error_share` times its value, for a body 1/`body_share`.
+  void keep_what_reduces_error(const EffectSet& best, Names& named, double error_share, RefusalReason why_not,
+                               const std::function<double(const Names& names, const Names& all)>& error_K_with,
+                               std::optional<double> body_share = {}) {
+    // The name with the weakest evidence is examined first, and bodies with an own share last.
+    std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) {
+      return std::pair(body_share && has_body(best.members[m]), search_->loss_without_nats(best, m));
+    });
+    double error_K = error_K_with(named, named);
     for (std::size_t i = named.size(); i-- > 0;) {
-      if (stays(named[i])) {
-        continue;
-      }
+      const int member = best.members[named[i]];
       // Left-out recordings show nothing about a recording with effects of its own, so these are removed together.
-      const estimation::Condition own = condition_of(best.members[named[i]]);
+      const estimation::Condition own = condition_of(member);
       Names others = named;
       std::erase_if(others, [&](std::size_t m) { return m == named[i] || (!own.empty() && condition_of(best.members[m]) == own); });
-      if (!(error_K < error_share * error_K_with(others))) {
-        refuse({.id = id_of(best.members[named[i]]), .reason = why_not});
+      const double share = has_body(member) ? body_share.value_or(error_share) : error_share;
+      if (!(error_K < share * error_K_with(others, named))) {
+        refuse({.id = id_of(member), .reason = why_not});
         named.erase(named.begin() + static_cast<std::ptrdiff_t>(i));
-        error_K = error_K_with(named);
+        error_K = error_K_with(named, named);
       }
     }
   }
@@ -281,28 +284,31 @@ class Selector : Rounds {
     return estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
   }
 
-  void build(const Judged& judged, const EffectSet& best, Names named) {
+  void build(const Judged& judged, const EffectSet& best, Names named, const ScanResult* curve = nullptr) {
     std::ranges::stable_sort(named, std::greater(), [&](std::size_t m) { return search_->loss_without_nats(best, m); });
+    out_.terms.clear();
     out_.after = out_.own;
-    if (named.empty()) {
-      return;
+    if (!named.empty()) {
+      estimation::Posterior fit = fit_with(best, named, setup_.around(judged.best_place));
+      if (std::isfinite(fit.evidence_nats)) {
+        const bool decides = fit.flux.drift_K > 0.0 || estimation::can_leave_out(fit.model, input_.runs);
+        out_.after = decides ? more_predictive(std::move(fit), input_.runs) : std::move(fit);
+        add_terms(best, named, kept_members(best, named));
+      } else {
+        out_.is_unexplained = true;
+        named.clear();
+      }
     }
-    estimation::Posterior fit = fit_with(best, named, setup_.around(judged.best_place));
-    if (!std::isfinite(fit.evidence_nats)) {
-      out_.is_unexplained = true;
-      return;
+    if (curve && !add_curve(judged, *curve)) {
+      return;  // without the heat of the curve, the sizes are not final
     }
     // The effect with the weakest evidence is removed first; without it, the others may have a size.
-    if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return is_zero(fit.model, best, named, m); });
+    if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return is_zero(best, named, m); });
         last != named.rend()) {
       refuse({.id = id_of(best.members[*last]), .reason = RefusalReason::no_size});
       named.erase(std::next(last).base());
-      build(judged, best, std::move(named));
-      return;
+      build(judged, best, std::move(named), curve);
     }
-    const bool decides = fit.flux.drift_K > 0.0 || estimation::can_leave_out(fit.model, input_.runs);
-    out_.after = decides ? more_predictive(std::move(fit), input_.runs) : std::move(fit);
-    add_terms(best, named, kept_members(best, named));
   }
 
   /// Returns the instances of the kept effects in the model, whose network contains them in the order in which they were added.
@@ -317,14 +323,12 @@ class Selector : Rounds {
     return names;
   }
 
-  /// Returns whether the fit sets the size of an effect to zero. Its evidence is then an error of the linearisation.
-  [[nodiscard]] bool is_zero(const estimation::Model& model, const EffectSet& best, const Names& named, std::size_t m) const {
-    const std::map<int, std::string> names = instances(model, kept_members(best, named));
-    const auto own = names.find(best.members[m]);
-    if (own == names.end()) {
-      return false;
-    }
-    const Eigen::Index size = size_coordinate(model, candidates()[static_cast<std::size_t>(own->first)], own->second);
+  /// Returns whether the final model sets the size of an effect to zero, for example because the plain fit predicts better.
+  [[nodiscard]] bool is_zero(const EffectSet& best, const Names& named, std::size_t m) const {
+    const int member = best.members[m];
+    const estimation::Model& model = out_.after.model;
+    const Eigen::Index size =
+        size_coordinate(model, candidates()[static_cast<std::size_t>(member)], instances(model, kept_members(best, named))[member]);
     constexpr double kThere = 1e-6;  // in typical sizes
     return model.low(size) == 0.0 && model.theta()[size] < kThere;
   }
@@ -352,8 +356,8 @@ class Selector : Rounds {
     }
   }
 
-  /// Adds the curve to the answer, and to the model if that can contain it (a motor has no law over the time since the start of a log).
-  void add_curve(const Judged& judged, const ScanResult& curve) {
+  /// Adds the curve to the answer. Returns whether the model contains it, too: no motor has a law over the time since the start of a log.
+  bool add_curve(const Judged& judged, const ScanResult& curve) {
     const Regressor& regressor = out_.regressors[static_cast<std::size_t>(curve.term.regressor)];
     AcceptedTerm term;
     term.curve = curve;
@@ -380,7 +384,7 @@ class Selector : Rounds {
     // The terms are in order of evidence.
     const auto behind =
         std::ranges::find_if(out_.terms, [&](const AcceptedTerm& other) { return other.loss_without_nats < term.loss_without_nats; });
-    out_.terms.insert(behind, std::move(term));
+    return !out_.terms.insert(behind, std::move(term))->effect_name.empty();
   }
 };
 

@@ -19,9 +19,8 @@ estimation::Model with_candidate(const estimation::Model& model, const Candidate
 /// Returns the coordinate of the candidate's size. The model must contain it as an effect of that name, a sensor error or a run deviation.
 Eigen::Index size_coordinate(const estimation::Model& model, const Candidate& candidate, std::string_view effect_name);
 
-/// Returns the model with the curve added as an effect `tabulated` with free values. Negative values are set to 0; the minimum of a
-/// conductance is subtracted first. Returns nothing if an effect cannot depend on this signal, or if the model already uses another log
-/// column.
+/// Returns the model with the curve added as an effect `tabulated` with free values; negative ones are 0, and a conductance starts at 0.
+/// Returns nothing if an effect cannot depend on this signal, or if the model already uses another log column.
 std::optional<estimation::Model> with_curve(const estimation::Model& model, const ScanResult& curve, const Regressor& regressor);
 
 /// Returns `model` with the values of parameters, sensor errors and deviations that `other` also contains.

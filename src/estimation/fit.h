@@ -25,7 +25,7 @@ struct FitSetup {
 
   /// Returns options for a fit with one assumption about the unknown heat.
   [[nodiscard]] PosteriorOptions with(const LatentFlux& flux) const;
-  /// Returns options for a fit that is averaged over the neighbours of `place`.
+  /// Returns options for a fit whose covariance is averaged over the neighbours of `place`.
   [[nodiscard]] PosteriorOptions around(const FluxPlace& place) const;
   /// Returns options for plain least squares of the free runs, without unknown heat.
   [[nodiscard]] PosteriorOptions plain() const;

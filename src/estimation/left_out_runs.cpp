@@ -112,7 +112,8 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {
   return without_own_effect(model, runs).size() >= kFewest;
 }
 
-double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options, double largest_K) {
+double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options, double largest_K,
+                        const Model* usual_in) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   if (!std::isfinite(fit.evidence_nats)) {
     return kInfinite;
@@ -121,7 +122,7 @@ double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& ru
   for (std::size_t r = 0; r < runs.size() && !options.weights.empty(); ++r) {
     accepted[r] = without_rejected(std::move(accepted[r]), options.weights[r]);
   }
-  const std::vector<std::string> recordings = without_own_effect(fit.model, runs);
+  const std::vector<std::string> recordings = without_own_effect(usual_in ? *usual_in : fit.model, runs);
   const auto count = static_cast<double>(recordings.size());
   std::vector<double> squares_K2(recordings.size(), kInfinite);
   std::atomic<double> sum_K2 = 0.0;

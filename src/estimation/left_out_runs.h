@@ -76,11 +76,11 @@ std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run);
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all
-/// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted. Samples
-/// with the weight 0 do not count. Call it only if can_leave_out(). If the error is above `largest_K`, the result is the error or ∞,
+/// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted: in the model
+/// `usual_in`, or in that of `fit` if it is null. Samples with the weight 0 do not count. Call it only if can_leave_out(). If the error is above `largest_K`, the result is the error or ∞,
 /// because not all recordings need a fit then.
 double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options,
-                        double largest_K = std::numeric_limits<double>::infinity());
+                        double largest_K = std::numeric_limits<double>::infinity(), const Model* usual_in = nullptr);
 
 /// Returns `fit`, or a fit with the options `plain` that starts from it if that predicts better: left-out recordings with
 /// less than Thresholds::better_share of the error, or, with too few recordings, the last third of every run after a fit to the first two

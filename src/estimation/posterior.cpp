@@ -195,7 +195,8 @@ class Fitter {
     return bounded_fit(all, prior_here(now_.model), (low_ - theta).array().max(-longest), (high_ - theta).array().min(longest));
   }
 
-  /// Sets the mean and covariance over all assumptions, Σ w·(covariance + step·stepᵀ) with w by evidence. See PosteriorOptions::around.
+  /// Sets the covariance over all assumptions, with weights by evidence. See PosteriorOptions::around. The values stay: their mean
+  /// belongs to a model with uneven bodies, and without these it would predict worse.
   void average() {
     std::vector<Columns> uneven = uneven_bodies(now_.fitted, runs_);
     if (!options_.has_uneven_bodies) {
@@ -223,21 +224,17 @@ class Fitter {
       best_nats = std::max(best_nats, fits.back().log_evidence);
     }
     double total_weight = 0.0;
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(count + uncertain);
-    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(count);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(count, count);
     for (const LinearFit& fit : fits) {
       const double weight = std::exp(fit.log_evidence - best_nats);
+      const auto step = fit.coefficients.head(count);
       total_weight += weight;
-      mean += weight * fit.coefficients;
-      square += weight * (fit.covariance + fit.coefficients * fit.coefficients.transpose());
+      mean += weight * step;
+      square += weight * (fit.covariance.topLeftCorner(count, count) + step * step.transpose());
     }
     mean /= total_weight;
-    now_.covariance = (square / total_weight - mean * mean.transpose()).topLeftCorner(count, count);
-    try {
-      now_ = moved(mean.head(count), start_steps_K(mean, designs));
-    } catch (const base::Failure&) {
-      return;
-    }
+    now_.covariance = square / total_weight - mean * mean.transpose();
   }
 
   /// Returns the change of the start temperatures in K for a step of the coordinates.

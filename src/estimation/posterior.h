@@ -32,8 +32,8 @@ struct PosteriorOptions {
   bool holds_covariance = false;
   std::optional<int> held = {};                                         ///< coordinate that keeps its start value
   double longest_step_ratio = std::numeric_limits<double>::infinity();  ///< largest change of a coordinate in one step
-  /// Other assumptions about the unknown heat. The result is averaged over them with their evidence as weights, so that the intervals
-  /// include this uncertainty. Empty: `flux` alone.
+  /// Other assumptions about the unknown heat. The covariance is averaged over them with their evidence as weights, so that the intervals
+  /// include this uncertainty. The values are those with `flux`. Empty: `flux` alone.
   std::vector<LatentFlux> around = {};
   /// Includes temperature differences within bodies in that average, see uneven_bodies(). false: the network has all bodies of the motor.
   bool has_uneven_bodies = true;

@@ -150,6 +150,20 @@ TEST(ManyParts, ABodyAtTheWindingNeedsASensorThere) {
   }
 }
 
+/// Without a sensor there, heat in a body that an earlier diagnosis added cannot be told from another size of the body.
+TEST(ManyParts, HeatInABodyOfTheFileNeedsASensorThere) {
+  for (const bool has_sensor : {true, false}) {
+    const Case one;
+    diagnosis::DiagnosisInput input = question(one, record(one));
+    input.model.network.add_node("third_node", 10.0);
+    if (has_sensor) {
+      input.train.front().sensors.front().node = "third_node";
+    }
+    const auto is_there = [](const Candidate& each) { return each.type && each.nodes.front() == "third_node"; };
+    EXPECT_EQ(std::ranges::any_of(candidates_for(input.model, input.train).candidates, is_there), has_sensor);
+  }
+}
+
 TEST(ManyParts, HideNothingThatWholeRunsTell) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one = loose(seed);

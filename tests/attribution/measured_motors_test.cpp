@@ -241,5 +241,18 @@ TEST(MeasuredMotors, half_a_log_at_one_load_does_not_claim_to_know_another_load)
               testing::ElementsAre(testing::Field(&diagnosis::BeyondTraining::signal, thermal::Signal::current)));
 }
 
+/// One recording of four minutes, to which whitened and plain fits give very different sizes.
+TEST(MeasuredMotors, an_effect_without_a_size_gets_no_name) {
+  SKIP_WITHOUT_MEASURED_DATA("ksu_propeller_bench");
+  const std::optional<std::filesystem::path> folder = measured_data("ksu_propeller_bench");
+  const recording::Recording all =
+      read(*folder / "custom_head_testing__HeadBaseline-KDE-2000_2020-02-13_160050.csv", reports() / "propeller_bench/recordings.map.toml");
+  const Diagnosed found =
+      diagnosed(propeller_bench(*folder).start, {recording::part_of(all, 0.0, 0.7)}, {recording::part_of(all, 0.7, 1.0)});
+  for (const diagnosis::FoundEffect& each : found.diagnosis.effects) {
+    EXPECT_GT(each.parameters.front().value, 0.0) << each.id << account(found.diagnosis);
+  }
+}
+
 }  // namespace
 }  // namespace heatsoak::attribution

@@ -175,5 +175,19 @@ TEST(SetSearch, FitsDecideAmongTheBestSets) {
   EXPECT_NEAR(found.sets()[1].log_probability_nats, before[2].log_probability_nats + 2.0, 1e-9);
 }
 
+/// A log that contradicts the model, for example with exchanged sensors.
+TEST(SetSearch, KeepsItsProbabilitiesIfEveryFitFails) {
+  std::vector<CandidateRule> rules;
+  for (const char* const id : {"a", "b", "c", "d"}) {
+    rules.push_back({true, -4.5, id, id, {}, 1.0});
+  }
+  const SelectionRules defaults;
+  SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
+  const std::vector<EffectSet> before = found.sets();
+  found.reconsider([](const std::vector<int>&, const SetSearch::AtBest&) { return -std::numeric_limits<double>::infinity(); }, 6);
+  EXPECT_EQ(found.sets().front().members, before.front().members);
+  EXPECT_NEAR(found.sets().front().probability, before.front().probability, 1e-12);
+}
+
 }  // namespace
 }  // namespace heatsoak::attribution

@@ -43,6 +43,26 @@ TEST(Posterior, a_model_that_runs_away_is_a_failure_and_of_a_trial_no_explanatio
   EXPECT_EQ(none.flux.rms_W, options.flux.rms_W);
 }
 
+/// Other assumptions about the unknown heat widen the intervals. The values belong to a model that these assumptions are not part of.
+TEST(Posterior, other_assumptions_widen_the_intervals_and_leave_the_values) {
+  std::vector<MeasuredRun> runs;
+  for (const std::uint64_t stream : {1, 2}) {
+    runs.push_back(generated_run({}, {}, 5, stream));
+  }
+  PosteriorOptions options;
+  options.flux = {{0.05, 0.05}, 200.0};
+  options.merged = {1, 1};
+  const std::vector<std::vector<double>> start_C(2, {25.0, 25.0});
+  const Model model = two_node_model({.winding_J_per_K = 22.0, .stator_ambient_K_per_W = 4.5}, 1.0);
+  const Posterior alone = posterior_of(model, runs, start_C, options);
+  options.around = {options.flux, {{0.2, 0.2}, 200.0}, {{0.02, 0.02}, 600.0}};
+  const Posterior averaged = posterior_of(model, runs, start_C, options);
+  EXPECT_EQ(averaged.model.theta(), alone.model.theta());
+  EXPECT_TRUE((averaged.covariance.diagonal().array() > alone.covariance.diagonal().array()).all());
+  const auto rest_of = [&](const Posterior& fit) { return rms_K(open_loop_errors(fit.model, runs, {})); };
+  EXPECT_EQ(rest_of(averaged), rest_of(alone));
+}
+
 TEST(FreeRunErrors, OfARunThatRunsAwayAreNotKnown) {
   const Model model = two_node_model({}, 1.0);
   EXPECT_TRUE(try_open_loop_errors(model, {hour_at(0.5)}, {}));
