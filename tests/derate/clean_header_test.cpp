@@ -37,24 +37,20 @@ const std::set<std::string> kNotKept{"2.5", "8.9", "12.1", "15.5"};
 struct Form {
   const char* name;
   const char* exporter;
-  const char* laws = "";  ///< appended to the motor's data sheet
-  std::optional<SensorOptions> sensor = {};
+  const Derating& (*derating)() = ecx_derating;
 };
 
-/// Derating of a form's motor with its effects or its sensor.
-Derating derating_for(const Form& form) {
-  const std::string_view laws = form.laws;
-  if (form.sensor) {
-    return derate(ecx_32(), twente(), quick_options(*form.sensor));
-  }
-  return laws.empty() ? ecx_derating() : derating_of(ecx_32_with(std::string(laws)));
+/// Derating of the motor with effects.
+const Derating& derating_with_effects() {
+  static const Derating derating = derating_of(ecx_32_with(kPowerAndExponential));
+  return derating;
 }
 
 class CleanHeader : public testing::TestWithParam<Form> {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter, derating_for(GetParam()));
+    std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter, GetParam().derating());
     const std::string prefix = identifier(ecx_derating().motor_id) + (std::string_view(GetParam().exporter) == "c_header" ? "" : "_q15");
     std::ofstream(folder_ / "use.c") << std::regex_replace(kUse, std::regex("PREFIX"), prefix);
   }
@@ -81,11 +77,9 @@ class CleanHeader : public testing::TestWithParam<Form> {
 INSTANTIATE_TEST_SUITE_P(
     Headers, CleanHeader,
     testing::Values(Form{"c_header", "c_header"}, Form{"c_header_q15", "c_header_q15"},
-                    Form{"c_header_with_power_and_exponential", "c_header", kPowerAndExponential},
-                    Form{"c_header_with_stator_thermistor", "c_header", "",
-                         SensorOptions{.node = motor::states::stator, .accuracy_K = 2.0}},
-                    Form{"c_header_with_winding_resistance", "c_header", "",
-                         SensorOptions{.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0}}),
+                    Form{"c_header_with_power_and_exponential", "c_header", derating_with_effects},
+                    Form{"c_header_with_stator_thermistor", "c_header", thermistor_derating},
+                    Form{"c_header_with_winding_resistance", "c_header", resistance_derating}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
@@ -99,7 +93,7 @@ TEST_P(CleanHeader, HasNoWarningsAsC99AndAsCpp11) {
 
 // A number that has a name appears once, where the name is defined.
 TEST_P(CleanHeader, IsReadable) {
-  std::string code = exported(GetParam().exporter);
+  std::string code = exported(GetParam().exporter, GetParam().derating());
   std::istringstream lines(code);
   for (std::string line; std::getline(lines, line);) {
     EXPECT_LE(line.size(), 140U) << line;

@@ -23,9 +23,10 @@ inline const Derating& thermistor_derating() {
   static const Derating derating = derate(ecx_32(), twente(), quick_options({}));
   return derating;
 }
-inline Derating resistance_derating() {
-  return derate(ecx_32(), twente(),
-                quick_options({.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0}));
+inline const Derating& resistance_derating() {
+  static const Derating derating = derate(
+      ecx_32(), twente(), quick_options({.kind = SensorKind::winding_resistance, .node = motor::states::winding, .accuracy_K = 10.0}));
+  return derating;
 }
 
 /// Euler steps of the true network. Its time constants are hundreds of times the period.

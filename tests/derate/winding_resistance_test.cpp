@@ -167,7 +167,7 @@ TEST(WindingResistance, NoiseOfTheVoltageCountsWithAQuarterOfItsRms) {
 }
 
 TEST(WindingResistance, HelpsAtRestAndIsTheGuardWithoutASensorAtSpeed) {
-  const Derating derating = resistance_derating();
+  const Derating& derating = resistance_derating();
   const SensorPlan& plan = *derating.sensor;
   EXPECT_LT(plan.observer.heat_safety_factor(), derating.observer.heat_safety_factor());
   EXPECT_GT(plan.lasting.front().with_A, 1.05 * plan.lasting.front().without_A);
