@@ -44,6 +44,8 @@ class Session {
   void write(const std::filesystem::path& path, std::string content) { files_.push_back({path, std::move(content)}); }
   /// Returns whether the chart of an answer is requested: for the file of --plot, which may be empty, or for an HTML report.
   [[nodiscard]] bool draws(const std::string& plot) const { return !plot.empty() || report_.ends_with(".html"); }
+  /// True if only the headline of the answer is shown or written.
+  [[nodiscard]] bool shows_only_headline() const { return is_quiet_ && report_.empty() && json_target_.empty(); }
   /// Adds the chart to the document, and its picture to the file of --plot.
   void draw(present::Document& document, const std::string& plot, report::Chart chart);
   /// Adds a file of the user that this command was asked to change in place.

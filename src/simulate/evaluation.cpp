@@ -56,6 +56,9 @@ std::optional<SuggestedChanges> changes_for(const EvaluationJob& job, const Eval
   }
   const select::MotorEvaluation& subject = subject_of(answer.results, answer.robot, &select::MotorEvaluation::motor_id);
   const bool passes = subject.verdict == select::Verdict::pass;
+  if (passes && !job.with_changes_if_passing) {
+    return std::nullopt;
+  }
   const motor::Motor& motor = *std::ranges::find(job.motors, subject.motor_id, &motor::Motor::id);
   const bool none_passes =
       std::ranges::none_of(answer.results, [](const select::MotorEvaluation& each) { return each.verdict == select::Verdict::pass; });
@@ -127,7 +130,9 @@ EvaluationAnswer run_evaluation(const EvaluationJob& job, const base::JobProgres
     if (job.with_changes) {
       const bool may_fail = !prospects.empty() && subject_of(prospects, answer.robot, &select::Prospect::motor_id).pass_probability() < 0.5;
       constexpr std::size_t kUsualOthers = 30;
-      phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, may_fail ? kUsualOthers : 0)});
+      if (may_fail || job.with_changes_if_passing) {
+        phases.push_back({kChanging, select::changes_work_s(answer.robot, job.duty, may_fail ? kUsualOthers : 0)});
+      }
     }
     return phases;
   };

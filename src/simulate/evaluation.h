@@ -32,6 +32,7 @@ struct EvaluationJob {
   int threads = 0;                                     ///< 0: all cores; the result does not depend on it
   bool with_bands = false;                             ///< keep the range of the samples over time
   bool with_changes = true;                            ///< search for changes of the robot that cool its motor
+  bool with_changes_if_passing = true;                 ///< search for them also if that motor passes, when the headline names none
   bool has_chosen_motors = false;                      ///< the user chose `motors`: another one is suggested only if none of them passes
   /// Returns the motors that may replace the robot's; called only if one of them may be suggested. May be empty.
   std::function<std::vector<motor::Motor>()> database = {};

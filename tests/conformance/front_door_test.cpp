@@ -226,6 +226,10 @@ TEST_F(FrontDoor, changes_that_help_follow_every_verdict) {
   const ProgramRun fails = run_here(line + "maxon_ecx_flat_32l_48v");
   EXPECT_THAT(fails.out, AllOf(HasSubstr("Changes of the robot that help maxon_ecx_flat_32l_48v most"), HasSubstr("Largest improvement")));
   EXPECT_THAT(run_here(line + "maxon_ecx_flat_42m_24v --no-changes").out, Not(HasSubstr("Changes of the robot")));
+  EXPECT_THAT(run_here(line + "maxon_ecx_flat_32l_48v --quiet").out, HasSubstr("Largest improvement"));
+  // A report and JSON contain the table whatever the terminal shows.
+  EXPECT_THAT(run_here(line + "maxon_ecx_flat_42m_24v --quiet --report -").out, HasSubstr("Changes of the robot"));
+  EXPECT_THAT(run_here(line + "maxon_ecx_flat_42m_24v --quiet --json -").out, HasSubstr("\"changes\""));
 }
 
 TEST_F(FrontDoor, every_kind_of_error_of_a_motor_file_is_reported_at_once) {

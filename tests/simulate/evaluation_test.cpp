@@ -33,6 +33,7 @@ TEST(Evaluation, refuses_more_samples_than_possible) {
 TEST(Evaluation, ranks_and_results_have_the_same_order) {
   EvaluationJob job = nominal_job("division_a_match", {ecx_32(), shipped_motor("maxon_ecx_flat_42m_24v")});
   job.closed_loop = ClosedLoopJob{.games = 1, .guard = GuardUse::off};
+  job.with_changes = false;
   const EvaluationAnswer answer = run_evaluation(job);
   ASSERT_EQ(answer.results.size(), 2U);
   ASSERT_EQ(answer.ranks.size(), 2U);
@@ -61,6 +62,18 @@ TEST(Evaluation, reads_the_database_only_to_search_another_motor) {
   reads = 0;
   EXPECT_FALSE(run_evaluation(job).changes);
   EXPECT_EQ(reads, 0);
+}
+
+// A game is played again for every change, which takes most of the time if only the headline is wanted.
+TEST(Evaluation, searches_changes_for_a_motor_that_passes_only_if_they_are_wanted) {
+  EvaluationJob job = nominal_job("paper_intermittent", {shipped_motor("maxon_ecx_flat_42m_24v")});
+  job.samples = 600;
+  ASSERT_EQ(run_evaluation(job).results.front().verdict, select::Verdict::pass);
+  EXPECT_TRUE(run_evaluation(job).changes);
+  job.with_changes_if_passing = false;
+  EXPECT_FALSE(run_evaluation(job).changes);
+  job.motors = {ecx_32()};
+  EXPECT_TRUE(run_evaluation(job).changes) << "the headline names the largest improvement";
 }
 
 // Who names candidates wants to know which of them to take. Another motor is suggested only if none of them passes.

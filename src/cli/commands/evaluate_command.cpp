@@ -84,6 +84,7 @@ simulate::EvaluationJob job_of(const EvaluateOptions& options, const Session& se
   job.database = [folders, conditions = options.conditions] { return select::motors_of_database(folders, conditions); };
   job.has_chosen_motors = !options.model.empty() || (options.motors && *options.motors != "all");
   job.with_bands = session.draws(options.plot);
+  job.with_changes_if_passing = !session.shows_only_headline();
   if (options.is_closed_loop) {
     job.closed_loop = options.closed_loop;
     job.closed_loop->guard = options.guard == "off" ? simulate::GuardUse::off : simulate::GuardUse::shadow;
