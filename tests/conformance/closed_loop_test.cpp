@@ -39,7 +39,8 @@ TEST(SimulateGuard, shadow_says_what_it_would_limit_and_changes_no_temperature) 
 TEST(EvaluateClosedLoop, ranks_by_games_and_does_not_depend_on_threads) {
   const Words words =
       Words{"evaluate"} + kRobot +
-      Words{"--motors", "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v", "--samples", "0", "--closed-loop", "--games", "2", "--json", "-"};
+      Words{"--motors", "maxon_ecx_flat_32l_48v,maxon_ecx_flat_42m_24v", "--samples", "0", "--closed-loop", "--games", "2",
+            "--no-changes", "--json", "-"};
   const ProgramRun one = run(words + Words{"--threads", "1"});
   ASSERT_EQ(one.exit_code, 0) << one.err;
   EXPECT_EQ(one.out, run(words + Words{"--threads", "2"}).out);
@@ -84,8 +85,9 @@ TEST(RobotWithoutFriction, is_simulated_with_assumed_friction_and_without_feed_f
   ASSERT_EQ(driven.exit_code, 0) << driven.err;
   EXPECT_THAT(driven.err, HasSubstr("bare.toml has no [friction]: the feed-forward of friction is off"));
   EXPECT_TRUE(driven.json().at("is_friction_assumed").get<bool>());
-  const ProgramRun ranked = run(
-      Words{"evaluate", "--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--closed-loop", "--games", "1", "--guard", "off"} + words);
+  const ProgramRun ranked = run(Words{"evaluate", "--motors", "maxon_ecx_flat_42m_24v", "--samples", "0", "--closed-loop", "--games", "1",
+                                      "--guard", "off", "--no-changes"} +
+                                words);
   ASSERT_EQ(ranked.exit_code, 0) << ranked.err;
   EXPECT_THAT(ranked.err, HasSubstr("the feed-forward of friction is off"));
   EXPECT_TRUE(ranked.json().at("is_friction_assumed").get<bool>());

@@ -309,7 +309,7 @@ TEST(EvaluateMatch, a_match_and_its_own_export_give_the_same_temperature) {
   const ProgramRun written = run(Words{"duty", "--duty", "division_b_match", "--out", "match.csv"} + robot, options);
   ASSERT_EQ(written.exit_code, 0) << written.err;
   const auto peak_C = [&](const std::string& duty) {
-    const Words motor{"--motors", "maxon_ecx_flat_32l_48v", "--samples", "0", "--json", "-"};
+    const Words motor{"--motors", "maxon_ecx_flat_32l_48v", "--samples", "0", "--no-changes", "--json", "-"};
     const ProgramRun evaluated = run(Words{"evaluate", "--duty", duty} + robot + motor, options);
     return evaluated.json().at("motors").at(0).at("winding_peak_C").at("nominal").get<double>();
   };
@@ -339,7 +339,7 @@ TEST(EvaluateMatch, says_that_the_duty_s_spread_is_included) {
   EXPECT_THAT(sampled.err, testing::ContainsRegex("3[ \n]games[ \n]with[ \n]different[ \n]inputs"));
   EXPECT_EQ(sampled.json().at("duty_draws"), 3);
   EXPECT_EQ(sampled.out, run(line + Words{"--samples", "24", "--threads", "1", "--json", "-"}).out);
-  const ProgramRun nominal = run(line + Words{"--samples", "0", "--json", "-"});
+  const ProgramRun nominal = run(line + Words{"--samples", "0", "--no-changes", "--json", "-"});
   EXPECT_EQ(nominal.json().at("duty_draws"), 0);
   EXPECT_THAT(nominal.err, testing::Not(HasSubstr("games")));
 }
