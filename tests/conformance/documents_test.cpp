@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <iterator>
 #include <regex>
-#include <set>
 #include <sstream>
 
 #include "program_run.h"
 #include "support/source_folder.h"
+#include "verb_examples.h"
 
 namespace heatsoak {
 namespace {
@@ -184,87 +184,12 @@ TEST_P(Document, links_to_files_that_exist) {
 
 INSTANTIATE_TEST_SUITE_P(pages, Document, testing::ValuesIn(documents()), [](const auto& instance) { return test_name(instance.param); });
 
-std::string with_single_blanks(const std::string& text) { return std::regex_replace(text, std::regex("[ \n]+"), " "); }
-
-/// A row of the table of verbs in README.md: a verb, and the line of output that the table shows for it.
-struct VerbCell {
-  std::string verb;
-  std::string output;
-};
-
-std::vector<VerbCell> verb_cells() {
-  const std::string text = content_of(kSource / "README.md");
-  // The verb may have a word after it ("generate core").
-  static const std::regex row("\n\\| `([a-z]+)[a-z ]*` \\| [^|]* \\| `([^`]*)` \\|");
-  std::vector<VerbCell> cells;
-  for (auto at = std::sregex_iterator(text.begin(), text.end(), row); at != std::sregex_iterator(); ++at) {
-    const std::string output = (*at)[2];
-    cells.push_back({(*at)[1], output});
-  }
-  return cells;
-}
-
-class VerbTable : public Document {};
-
-TEST_P(VerbTable, shows_output_of_the_example_in_the_help) {
-  const std::string verb = GetParam();
-  const std::string page = content_of(kSource / "docs" / "reference" / (verb + ".md"));
-  const std::vector<Block> blocks = blocks_of(page);
-  ASSERT_EQ(blocks.size(), 1U);
-  // The shell reads the output of the command in source <(…), so it shows nothing.
-  static const std::regex substitution(R"(^source <\((.*)\)$)");
-  const ProgramRun result = run_line(std::regex_replace(blocks.front().lines.front(), substitution, "$1"), options_);
-  EXPECT_LE(result.exit_code, 1) << result.err;
-  for (const VerbCell& each : verb_cells()) {
-    if (each.verb == verb) {
-      EXPECT_THAT(with_single_blanks(result.out), HasSubstr(with_single_blanks(each.output))) << result.err;
-    }
-  }
-}
-
 std::vector<std::string> shown_verbs() {
   std::vector<std::string> verbs;
   for (const VerbCell& each : verb_cells()) {
     verbs.push_back(each.verb);
   }
   return verbs;
-}
-
-INSTANTIATE_TEST_SUITE_P(verbs, VerbTable, testing::ValuesIn(shown_verbs()), [](const auto& instance) { return instance.param; });
-
-/// Commands that the tests of the documents run.
-std::set<std::string> commands_in_documents() {
-  std::set<std::string> all;
-  for (const std::string& name : documents()) {
-    for (const Block& block : blocks_of(content_of(kSource / name))) {
-      for (const Shown& shown : commands_of(block)) {
-        all.insert(shown.command);
-      }
-    }
-  }
-  return all;
-}
-
-/// Pages of the reference, one for each verb.
-class ReferencePage : public Document {};
-
-TEST_P(ReferencePage, has_examples_that_run) {
-  const std::vector<Block> blocks = blocks_of(content_of(kSource / "docs" / "reference" / (GetParam() + ".md")));
-  ASSERT_EQ(blocks.size(), 1U);
-  EXPECT_EQ(blocks.front().language, "sh");
-  // VerbTable runs the first example of a verb of the table.
-  std::vector<Shown> commands = commands_of(blocks.front());
-  const std::vector<std::string> in_table = shown_verbs();
-  const bool is_run = std::ranges::find(in_table, GetParam()) != in_table.end();
-  commands.erase(commands.begin(), commands.begin() + (is_run ? 1 : 0));
-  const std::set<std::string> in_documents = commands_in_documents();
-  for (const Shown& each : commands) {
-    if (in_documents.contains(each.command)) {
-      continue;
-    }
-    const ProgramRun result = run_line(each.command, options_);
-    EXPECT_LE(result.exit_code, 1) << each.command << "\n" << result.err;
-  }
 }
 
 std::vector<std::string> documented_verbs() {
@@ -277,7 +202,21 @@ std::vector<std::string> documented_verbs() {
   return verbs;
 }
 
-INSTANTIATE_TEST_SUITE_P(verbs, ReferencePage, testing::ValuesIn(documented_verbs()), [](const auto& instance) { return instance.param; });
+// Verb.has_an_example_that_runs runs the examples of the help.
+TEST(Documents, pages_of_the_reference_show_the_examples_of_the_help) {
+  for (const std::string& verb : documented_verbs()) {
+    const std::vector<Block> blocks = blocks_of(content_of(kSource / "docs" / "reference" / (verb + ".md")));
+    ASSERT_EQ(blocks.size(), 1U) << verb;
+    EXPECT_EQ(blocks.front().language, "sh") << verb;
+    std::vector<std::string> commands;
+    for (const Shown& each : commands_of(blocks.front())) {
+      commands.push_back(with_single_blanks(std::regex_replace(each.command, std::regex("\\\\\n"), "")));
+    }
+    std::vector<std::string> examples = examples_of_the_help(verb);
+    std::ranges::transform(examples, examples.begin(), with_single_blanks);
+    EXPECT_EQ(commands, examples) << verb;
+  }
+}
 
 TEST(Documents, every_verb_is_in_the_table) {
   std::vector<std::string> verbs = shown_verbs();

@@ -8,6 +8,7 @@
 
 #include "program_run.h"
 #include "short_runs.h"
+#include "verb_examples.h"
 
 namespace heatsoak {
 namespace {
@@ -37,24 +38,6 @@ std::vector<std::string> verbs_of_the_help() {
 }
 
 TEST(Verbs, have_a_reference_page_each) { EXPECT_THAT(verbs_of_the_help(), testing::UnorderedElementsAreArray(verb_names())); }
-
-/// Returns the lines below "Example:" in the help.
-std::vector<std::string> examples(const std::string& verb) {
-  std::istringstream help(run({verb, "--help"}).out);
-  std::vector<std::string> result;
-  bool listed = false;
-  for (std::string line; std::getline(help, line);) {
-    if (line.starts_with("Example")) {
-      listed = true;
-    } else if (listed && !result.empty() && result.back().ends_with('\\')) {
-      result.back().back() = ' ';
-      result.back() += line;
-    } else if (listed && line.starts_with("  ")) {
-      result.push_back(line.substr(2));
-    }
-  }
-  return result;
-}
 
 class Verb : public testing::TestWithParam<std::string> {};
 
@@ -90,21 +73,37 @@ void remove_listed(const fs::path& folder, const std::string& text) {
   }
 }
 
+/// Expects the output that README.md shows for the first example of the verb.
+void expect_output_of_readme(const std::string& verb, const std::string& line, const std::string& output) {
+  // The shell reads the output of the command in source <(…), so it shows nothing.
+  static const std::regex substitution(R"(^source <\((.*)\)$)");
+  std::smatch command;
+  const std::string text = std::regex_match(line, command, substitution) ? run_line(command.str(1)).out : output;
+  for (const VerbCell& each : verb_cells()) {
+    if (each.verb == verb) {
+      EXPECT_THAT(with_single_blanks(text), HasSubstr(with_single_blanks(each.output))) << line;
+    }
+  }
+}
+
 // The examples must run in any folder, because all files that they need are installed.
 TEST_P(Verb, has_an_example_that_runs) {
-  const std::vector<std::string> lines = examples(GetParam());
+  const std::vector<std::string> lines = examples_of_the_help(GetParam());
   ASSERT_THAT(lines, Not(IsEmpty()));
   for (const std::string& line : lines) {
     const TemporaryFolder folder;
     RunOptions options;
     options.folder = folder.path();
-    options.environment = {"DISPLAY", "WAYLAND_DISPLAY"};
+    options.environment = {"DISPLAY", "WAYLAND_DISPLAY", "COLUMNS=80"};  // the width of a usual terminal
     options.time_limit_s = 280;
     EXPECT_THAT(line, HasSubstr("heatsoak " + GetParam()));
     const bool answers = line.find("--json") == std::string::npos && run({GetParam(), "--help"}).out.find("--report") != std::string::npos;
     const ProgramRun result = run_line(line + (answers ? " --report all.md --json all.json" : ""), options);
     EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1) << line << "\nends with " << result.exit_code << "\n" << result.err;
     EXPECT_THAT(folder.names(), Not(Contains(HasSubstr("partial"))));
+    if (line == lines.front()) {
+      expect_output_of_readme(GetParam(), line, result.out);
+    }
     // The example must have written its declared output files.
     std::istringstream words(line);
     std::string before;
