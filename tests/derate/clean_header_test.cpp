@@ -51,7 +51,7 @@ class CleanHeader : public testing::TestWithParam<Form> {
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "guard.h") << exported(GetParam().exporter, GetParam().derating());
-    const std::string prefix = identifier(ecx_derating().motor_id) + (std::string_view(GetParam().exporter) == "c_header" ? "" : "_q15");
+    const std::string prefix = identifier(GetParam().derating().motor_id) + (std::string_view(GetParam().exporter) == "c_header" ? "" : "_q15");
     std::ofstream(folder_ / "use.c") << std::regex_replace(kUse, std::regex("PREFIX"), prefix);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -107,6 +107,9 @@ struct PoweredOffMotor {
     }
     thermal::TransientOptions options;
     options.start_C = start_C;
+    // The explicit method takes steps of the fastest time constant, also when only the slowest body still cools.
+    constexpr double kStiff_s = 3600.0;
+    options.method = elapsed_s >= kStiff_s ? ode::OdeMethod::cvodes_bdf : ode::OdeMethod::arkode_erk;
     return thermal::run_transient(guarded.network, guarded.network.values(), std::vector<thermal::Interval>{{elapsed_s, at}}, options);
   }
 
