@@ -194,12 +194,24 @@ void forget_fit(motor::Motor& motor, const std::vector<recording::Recording>& re
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
-  for (const std::string& name : motor.fit->parameters) {
-    base::ParameterValue* const parameter = motor::find_parameter(motor, name);
+  const auto forget = [](base::ParameterValue& parameter) {
     // The other parameters were not identifiable in that fit and kept their own uncertainty.
-    if (parameter && parameter->origin == base::Origin::measured && parameter->value > 0.0) {
-      parameter->spread = base::Spread{base::Spread::Kind::range, parameter->value * std::exp(-2.0 * calibration::kSheet_sd),
-                                       parameter->value * std::exp(2.0 * calibration::kSheet_sd), true};
+    if (parameter.origin == base::Origin::measured && parameter.value > 0.0) {
+      parameter.spread = base::Spread{base::Spread::Kind::range, parameter.value * std::exp(-2.0 * calibration::kSheet_sd),
+                                      parameter.value * std::exp(2.0 * calibration::kSheet_sd), true};
+    }
+  };
+  for (const std::string& name : motor.fit->parameters) {
+    if (base::ParameterValue* const parameter = motor::find_parameter(motor, name)) {
+      forget(*parameter);
+    }
+  }
+  // Parameters of effects without an interval are held.
+  for (motor::MotorEffect& effect : motor.effects) {
+    for (base::ParameterValue& parameter : effect.parameters) {
+      if (parameter.spread) {
+        forget(parameter);
+      }
     }
   }
   motor.fit.reset();

@@ -137,5 +137,28 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   EXPECT_EQ(both.sensors[1].name, "sensor_lag_stator_2");
 }
 
+/// The second diagnosis starts from the file of the first and reads the same logs.
+TEST(EffectsOfTheFile, AreNotMoreCertainAfterTheSameLogsAgain) {
+  Case one;
+  one.missing = std::ranges::find(subjects(), "windage", &Subject::name)->make(1.0);
+  const Runs runs = record(one);
+  recording::NamedLogs logs;
+  for (const TrueRun& run : runs.training) {
+    logs.fitted.push_back(run.log);
+  }
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("same_logs_{}.toml", getpid());
+  const diagnosis::DiagnosisAnswer first = diagnosis::run_diagnosis({sheet_of(runs.make, file), logs});
+  ASSERT_EQ(first.motor.effects.size(), 1U) << account(first.diagnosis);
+  std::ofstream(file) << motor::to_toml(first.motor);
+  const diagnosis::DiagnosisAnswer second = diagnosis::run_diagnosis({motor::read_motor(file), logs});
+  std::filesystem::remove(file);
+  const auto width_of = [](const diagnosis::DiagnosisAnswer& answer) {
+    const base::Spread& spread = *answer.motor.effects.front().parameters.front().spread;
+    return std::log(spread.high / spread.low);
+  };
+  ASSERT_EQ(second.motor.effects.size(), 1U) << account(second.diagnosis);
+  EXPECT_GT(width_of(second), 0.9 * width_of(first));
+}
+
 }  // namespace
 }  // namespace heatsoak::attribution::truth
