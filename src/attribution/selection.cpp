@@ -9,6 +9,7 @@
 
 #include "attribution/rounds.h"
 #include "estimation/free_run_errors.h"
+#include "estimation/interval.h"
 #include "estimation/left_out_runs.h"
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
@@ -303,7 +304,7 @@ class Selector : Rounds {
       return;  // without the heat of the curve, the sizes are not final
     }
     // The effect with the weakest evidence is removed first; without it, the others may have a size.
-    if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return is_zero(best, named, m); });
+    if (const auto last = std::find_if(named.rbegin(), named.rend(), [&](std::size_t m) { return has_no_size(best, named, m); });
         last != named.rend()) {
       refuse({.id = id_of(best.members[*last]), .reason = RefusalReason::no_size});
       named.erase(std::next(last).base());
@@ -323,14 +324,13 @@ class Selector : Rounds {
     return names;
   }
 
-  /// Returns whether the final model sets the size of an effect to zero, for example because the plain fit predicts better.
-  [[nodiscard]] bool is_zero(const EffectSet& best, const Names& named, std::size_t m) const {
-    const int member = best.members[m];
+  /// True if the final model sets the size to zero, or if zero is in the 95 % interval of a sensor error, which unknown bodies imitate.
+  [[nodiscard]] bool has_no_size(const EffectSet& best, const Names& named, std::size_t m) const {
+    const Candidate& candidate = candidates()[static_cast<std::size_t>(best.members[m])];
     const estimation::Model& model = out_.after.model;
-    const Eigen::Index size =
-        size_coordinate(model, candidates()[static_cast<std::size_t>(member)], instances(model, kept_members(best, named))[member]);
-    constexpr double kThere = 1e-6;  // in typical sizes
-    return model.low(size) == 0.0 && model.theta()[size] < kThere;
+    const Eigen::Index size = size_coordinate(model, candidate, instances(model, kept_members(best, named))[best.members[m]]);
+    const double least_share = candidate.sensor_type ? estimation::kInterval_sd * std::sqrt(out_.after.covariance(size, size)) : 1e-6;
+    return model.low(size) <= 0.0 && std::abs(model.theta()[size]) < least_share;
   }
 
   void add_terms(const EffectSet& best, const Names& named, const std::vector<int>& kept) {

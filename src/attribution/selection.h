@@ -73,7 +73,7 @@ enum class RefusalReason {
   curve_is_better,             ///< a curve over a signal explains the runs better
   unknown_heat_remains,        ///< material unknown heat remains, and the error of whole runs does not fall enough
   hardly_improves_whole_runs,  ///< the prediction of whole runs hardly improves
-  no_size                      ///< the fit of the whole model sets its size to zero
+  no_size                      ///< the fit of the whole model cannot distinguish its size from zero
 };
 struct Refusal {
   std::string id;

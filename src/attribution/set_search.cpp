@@ -156,7 +156,7 @@ void SetSearch::reconsider(const std::function<double(const std::vector<int>&, c
   }
   const double common_nats = change_nats[winner];
   if (!std::isfinite(common_nats)) {
-    return;  // all fits failed and tell nothing
+    return;  // all fits failed and show nothing
   }
   for (std::size_t i = 0; i < sets_.size(); ++i) {
     sets_[i].log_probability_nats += i < change_nats.size() ? change_nats[i] : common_nats;

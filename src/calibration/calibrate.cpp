@@ -299,8 +299,7 @@ class Calibrating {
     }
   }
 
-  /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may predict whole runs
-  /// worse.
+  /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may do that.
   void report_grown_errors(bool is_holdout, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
       constexpr double kWorse_ratio = 1.1;
@@ -317,7 +316,9 @@ class Calibrating {
     for (const CalibratedValue& each : all_.motor_model.parameters) {
       const double moved = each.exponents.dot(all_.fit.theta - all_.motor_model.model.theta());
       const double sd = std::sqrt(each.exponents.dot(all_.fit.covariance * each.exponents));
-      if (each.is_of_file && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
+      const auto is_in = [&](const AcceptedExtension& added) { return each.name.starts_with(fmt::format("effects.{}.", added.name)); };
+      const bool is_new = all_.forecast && std::ranges::any_of(all_.forecast->accepted, is_in);
+      if (each.is_of_file && !is_new && std::abs(moved) > kUnlikely_sd * std::hypot(each.prior_sd, sd)) {
         all_.findings.push_back(LargeChange{each.name, std::exp(moved), std::abs(moved) / each.prior_sd});
       }
     }

@@ -150,7 +150,7 @@ TEST(ManyParts, ABodyAtTheWindingNeedsASensorThere) {
   }
 }
 
-/// Without a sensor there, heat in a body that an earlier diagnosis added cannot be told from another size of the body.
+/// Without a sensor there, heat in a body that an earlier diagnosis added cannot be distinguished from another size of the body.
 TEST(ManyParts, HeatInABodyOfTheFileNeedsASensorThere) {
   for (const bool has_sensor : {true, false}) {
     const Case one;

@@ -321,5 +321,18 @@ TEST_F(CalibratedModel, IsReadByEveryOtherVerb) {
   EXPECT_EQ(diagnosed.exit_code, 0) << diagnosed.err;
 }
 
+/// The written file contains a body that the motor file does not have: no change of a stated value, but nothing to hide either.
+TEST(Calibrate, SaysWhatTheWrittenNetworkContainsForForecasts) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments{"calibrate", "--motor", kMotor, "--out", "model.toml"};
+  for (const char* log : {"bench.csv", "match_1.csv", "match_2.csv"}) {
+    arguments.push_back((kSoak / log).string());
+  }
+  const ProgramRun found = run(arguments, in(folder.path()));
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("- for better forecasts the network now has body_at_stator"));
+  EXPECT_THAT(found.out, testing::Not(HasSubstr("times the value of")));
+}
+
 }  // namespace
 }  // namespace heatsoak

@@ -154,7 +154,9 @@ std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer
                                      each.remedy == result.next_experiment ? "the next experiment above" : words_of(each.remedy))});
   }
   for (const calibration::CalibrationFinding& each : result.findings) {
-    all.push_back({severity_of(each), words_of(each)});
+    const auto* const extended = std::get_if<calibration::ExtendedForForecasts>(&each);
+    // Whoever uses the file must know that it contains more than the tables above.
+    all.push_back({extended && extended->is_written ? Severity::scope : severity_of(each), words_of(each)});
   }
   // Rejected samples rank below notes that limit the answer.
   for (const std::string& note : reading_words(readings)) {

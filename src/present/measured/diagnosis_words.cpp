@@ -274,7 +274,7 @@ std::string reason_in_words(const attribution::Refusal& refused) {
     case attribution::RefusalReason::hardly_improves_whole_runs:
       return "the effect hardly improves the prediction of whole runs";
     case attribution::RefusalReason::no_size:
-      return "the fit of the whole model sets its size to zero";
+      return "the fit of the whole model cannot distinguish its size from zero";
   }
   return "";
 }
