@@ -251,6 +251,7 @@ TEST(MeasuredMotors, an_effect_without_a_size_gets_no_name) {
       diagnosed(propeller_bench(*folder).start, {recording::part_of(all, 0.0, 0.7)}, {recording::part_of(all, 0.7, 1.0)});
   for (const diagnosis::FoundEffect& each : found.diagnosis.effects) {
     EXPECT_GT(each.parameters.front().value, 0.0) << each.id << account(found.diagnosis);
+    EXPECT_FALSE(each.id.starts_with("sensor_") && each.parameters.front().low <= 0.0) << each.id << account(found.diagnosis);
   }
 }
 
