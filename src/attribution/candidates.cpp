@@ -61,7 +61,7 @@ std::vector<std::string> nodes_with(const thermal::Network& network, const therm
 }
 
 /// Returns all node assignments to try: the default nodes, winding and stator for effects that may be anywhere, and the file's bodies.
-/// Where no sensor is, heat cannot be distinguished from another size of a body, nor a body from another one.
+/// The other bodies need a sensor: without one, heat in a body looks like another size of the body.
 std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type,
                                                  const std::vector<estimation::MeasuredRun>& runs) {
   constexpr int kSheetNodes = 2;  // winding and stator

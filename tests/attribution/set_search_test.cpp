@@ -97,11 +97,17 @@ TEST(SetSearch, EvidenceOfASizeWithASignIsTheIntegralOverIt) {
   }
 }
 
-TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
+/// Rules of four candidates of different families.
+std::vector<CandidateRule> four_rules() {
   std::vector<CandidateRule> rules;
   for (const char* const id : {"a", "b", "c", "d"}) {
     rules.push_back({true, -4.5, id, id, {}, 1.0});
   }
+  return rules;
+}
+
+TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
+  std::vector<CandidateRule> rules = four_rules();
   rules[1].family = "a";  // nearly collinear with column a
   const SelectionRules defaults;
   const SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
@@ -121,10 +127,7 @@ TEST(SetSearch, NamesWhatIsThereAndItsProbabilityAddsUp) {
 TEST(SetSearch, IndistinguishableEffectsAreCertainAsAFamily) {
   Problem one = problem(5, 1.0);
   one.candidates.col(1) = one.candidates.col(0);
-  std::vector<CandidateRule> rules;
-  for (const char* const id : {"a", "b", "c", "d"}) {
-    rules.push_back({true, -4.5, id, id, {}, 1.0});
-  }
+  std::vector<CandidateRule> rules = four_rules();
   rules[1].family = "a";
   const SelectionRules defaults;
   const SetSearch found({reduced_of(one)}, rules, defaults);
@@ -138,10 +141,7 @@ TEST(SetSearch, IndistinguishableEffectsAreCertainAsAFamily) {
 TEST(SetSearch, OneOfTwoThatMayReplaceEachOtherIsCertain) {
   Problem one = problem(5, 1.0);
   one.candidates.col(1) = one.candidates.col(0);
-  std::vector<CandidateRule> rules;
-  for (const char* const id : {"a", "b", "c", "d"}) {
-    rules.push_back({true, -4.5, id, id, {}, 1.0});
-  }
+  std::vector<CandidateRule> rules = four_rules();
   const SelectionRules defaults;
   const SetSearch found({reduced_of(one)}, rules, defaults);
   const EffectSet& best = found.sets().front();
@@ -153,10 +153,7 @@ TEST(SetSearch, OneOfTwoThatMayReplaceEachOtherIsCertain) {
 /// The linear evidence of the best set was too high. The set whose non-linear fit confirms its evidence becomes the best. Sets without a
 /// fit get the same correction.
 TEST(SetSearch, FitsDecideAmongTheBestSets) {
-  std::vector<CandidateRule> rules;
-  for (const char* const id : {"a", "b", "c", "d"}) {
-    rules.push_back({true, -4.5, id, id, {}, 1.0});
-  }
+  std::vector<CandidateRule> rules = four_rules();
   const SelectionRules defaults;
   SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
   const std::vector<EffectSet> before = found.sets();
@@ -177,10 +174,7 @@ TEST(SetSearch, FitsDecideAmongTheBestSets) {
 
 /// A log that contradicts the model, for example with exchanged sensors.
 TEST(SetSearch, KeepsItsProbabilitiesIfEveryFitFails) {
-  std::vector<CandidateRule> rules;
-  for (const char* const id : {"a", "b", "c", "d"}) {
-    rules.push_back({true, -4.5, id, id, {}, 1.0});
-  }
+  std::vector<CandidateRule> rules = four_rules();
   const SelectionRules defaults;
   SetSearch found({reduced_of(problem(3, 2.0))}, rules, defaults);
   const std::vector<EffectSet> before = found.sets();

@@ -155,7 +155,7 @@ std::vector<Note> calibration_notes(const calibration::CalibrationAnswer& answer
   }
   for (const calibration::CalibrationFinding& each : result.findings) {
     const auto* const extended = std::get_if<calibration::ExtendedForForecasts>(&each);
-    // Whoever uses the file must know that it contains more than the tables above.
+    // The file contains effects that the motor file did not have, so users must see this.
     all.push_back({extended && extended->is_written ? Severity::scope : severity_of(each), words_of(each)});
   }
   // Rejected samples rank below notes that limit the answer.
