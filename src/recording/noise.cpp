@@ -8,6 +8,7 @@ namespace heatsoak::recording {
 namespace {
 
 constexpr double kMedianToSigma = 1.4826;
+constexpr std::size_t kLongRest = 20;  // more equal samples may be a frozen sensor, which says nothing about noise
 
 std::vector<double> sorted_of(std::vector<double> values) {
   std::ranges::sort(values);
@@ -79,10 +80,11 @@ void NoiseGauge::add(std::span<const double> values) {
       values_.add(value);
     }
     const double change = value - value_;
+    equal_ = change == 0.0 ? equal_ + 1 : 0;
     if (!std::isnan(change)) {
       changes_.add(std::abs(change));
       const double bend = change - (value_ - before_);
-      if (!std::isnan(bend)) {
+      if (!std::isnan(bend) && equal_ < kLongRest) {
         bends_.add(std::abs(bend));
       }
     }

@@ -21,7 +21,8 @@ double resolution_of(std::span<const double> values);
 struct NoiseLevel {
   double step = 0.0;   ///< resolution_of()
   double usual = 0.0;  ///< median of the nonzero changes from one sample to the next
-  /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12.
+  /// Standard deviation of white noise: 1.4826 · median|second difference| / √6, but not below step/√12. Of more than 20 equal samples in
+  /// a row, only the first 20 count.
   double noise = 0.0;
   double repeats_share = 0.0;  ///< share of neighbouring samples that are equal
   std::size_t distinct = 0;    ///< number of distinct values in the sample
@@ -34,7 +35,10 @@ class NoiseGauge {
   explicit NoiseGauge(std::size_t most = Thinned::kMost) : values_(most), changes_(most), bends_(most) {}
 
   /// Begins a new run: differences do not extend over this point.
-  void begin_run() { value_ = before_ = std::numeric_limits<double>::quiet_NaN(); }
+  void begin_run() {
+    value_ = before_ = std::numeric_limits<double>::quiet_NaN();
+    equal_ = 0;
+  }
   void add(std::span<const double> values);
   [[nodiscard]] NoiseLevel level() const;
 
@@ -44,6 +48,7 @@ class NoiseGauge {
   Thinned bends_;
   double value_ = std::numeric_limits<double>::quiet_NaN();  ///< last value
   double before_ = value_;                                   ///< value before the last
+  std::size_t equal_ = 0;                                    ///< number of equal neighbours up to the last value
 };
 
 /// Noise of values in order of time. NaN are skipped; differences do not extend over the ends of `runs` ([begin, end)).

@@ -62,6 +62,19 @@ TEST(Screening, FrozenToTheEnd) {
   EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::frozen)).size(), 250U);
 }
 
+/// Most samples are then equal, but the noise of the others shows that this is impossible.
+TEST(Screening, FrozenForMostOfTheLog) {
+  for (const int from : {850, 400}) {
+    double held = 0.0;
+    const Read result = read_text(changed({}, [&held, from](int row, std::vector<double>& cells) {
+      held = row == from ? cells[winding] : held;
+      cells[winding] = row >= from ? held : cells[winding];
+    }));
+    EXPECT_EQ(lines_of(result.report.find("winding_C", LeftOutReason::frozen)).size(), static_cast<std::size_t>(1800 - from));
+    EXPECT_EQ(result.report.find("stator_C", LeftOutReason::frozen), nullptr);
+  }
+}
+
 TEST(Screening, SaturatedSensorIsLeftOut) {
   int cut = 0;
   const Read result = read_text(changed({}, [&cut](int, std::vector<double>& cells) {
