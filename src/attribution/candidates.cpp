@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "estimation/added_terms.h"
 #include "estimation/log_rows.h"
 #include "estimation/model_along_run.h"
 #include "estimation/spans.h"
 #include "estimation/usual_heat.h"
+#include "motor/datasheet_network.h"
 
 namespace heatsoak::attribution {
 namespace {
@@ -64,14 +64,13 @@ std::vector<std::string> nodes_with(const thermal::Network& network, const therm
 /// The other bodies need a sensor: without one, heat in a body looks like another size of the body.
 std::vector<std::vector<std::string>> placements(const thermal::Network& network, const thermal::EffectType& type,
                                                  const std::vector<estimation::MeasuredRun>& runs) {
-  constexpr int kSheetNodes = 2;  // winding and stator
   std::vector<std::vector<std::string>> all{nodes_with(network, type, type.nodes.front().default_node)};
   for (int node = 0; node < network.state_count(); ++node) {
     const std::string_view name = network.node_name(node);
     const bool is_seen = std::ranges::any_of(runs, [&](const estimation::MeasuredRun& run) { return run.sensor_at(name).has_value(); });
     const bool is_one_node = type.nodes.size() == 1 && !type.nodes.front().own_capacity;
-    const bool is_possible = node < kSheetNodes ? type.candidacy.is_anywhere && (is_one_node || is_seen)
-                                                : (type.candidacy.is_anywhere || is_one_node) && is_seen;
+    const bool is_possible = node < motor::states::first_own ? type.candidacy.is_anywhere && (is_one_node || is_seen)
+                                                             : (type.candidacy.is_anywhere || is_one_node) && is_seen;
     if (is_possible && name != type.nodes.front().default_node) {
       all.push_back(nodes_with(network, type, name));
     }
@@ -160,7 +159,7 @@ void add_network_candidates(const estimation::Model& model, const std::vector<es
     if (!type.candidacy.size_parameter) {
       continue;
     }
-    if (const std::vector<std::string_view> names = estimation::lacking(type.needs, runs); !names.empty()) {
+    if (const std::vector<std::string_view> names = estimation::lacking(type, runs); !names.empty()) {
       list.not_judged.push_back({std::string(type.name), {names.begin(), names.end()}});
       continue;
     }

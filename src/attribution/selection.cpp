@@ -193,8 +193,7 @@ class Selector : Rounds {
     std::vector<int> kept;
     std::ranges::transform(members, std::back_inserter(kept), [&](std::size_t m) { return best.members[m]; });
     std::ranges::sort(kept);
-    const SetSearch::AtBest at = search_->at_best(kept);
-    const estimation::Model model = with_members(kept, at, ShapesAre::held);
+    const estimation::Model model = with_members(kept, search_->at_best(kept), ShapesAre::held);
     const estimation::PosteriorOptions options = setup_.with(setup_.grid.at(best_place_));
     estimation::Posterior fit = estimation::try_posterior_of(model, input_.runs, starts_of(model), options);
     // Sensor drift means that the network lacks bodies. Whitened residuals may then not give the most predictive parameters.

@@ -1,6 +1,5 @@
 #include "attribution/set_search.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -70,9 +70,12 @@ double of(const std::vector<double>* values, std::size_t row) { return values ? 
 
 std::string_view words_of(thermal::Signal signal) { return thermal::quantity_of(signal).lacking; }
 
-std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<MeasuredRun>& runs) {
+std::vector<std::string_view> lacking(const thermal::EffectType& type, const std::vector<MeasuredRun>& runs) {
   std::vector<std::string_view> names;
-  for (const thermal::Signal signal : needs) {
+  if (type.candidacy.is_in_current && std::ranges::any_of(runs, &MeasuredRun::is_current_measured)) {
+    names.emplace_back("torque in place of the measured current");
+  }
+  for (const thermal::Signal signal : type.needs) {
     if (std::ranges::any_of(runs, [&](const MeasuredRun& run) { return !run.has(signal); })) {
       names.push_back(words_of(signal));
     }

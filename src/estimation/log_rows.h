@@ -15,8 +15,8 @@ namespace heatsoak::estimation {
 using recording::column_of;
 /// Returns the name of a signal in sentences, for example "torque and speed".
 std::string_view words_of(thermal::Signal signal);
-/// Returns the names of the signals that at least one run lacks.
-std::vector<std::string_view> lacking(const std::vector<thermal::Signal>& needs, const std::vector<MeasuredRun>& runs);
+/// Returns what at least one run lacks to test the effect, in words: signals, or a current that follows from the torque.
+std::vector<std::string_view> lacking(const thermal::EffectType& type, const std::vector<MeasuredRun>& runs);
 
 /// Returns whether the channel exists and has a value in any row.
 bool has_values(const recording::Channel* channel);
@@ -35,6 +35,7 @@ class LogRows {
   /// True if the row has the temperature of the surroundings and all signals that the options need.
   [[nodiscard]] bool is_known(std::size_t row) const;
   [[nodiscard]] bool has_surroundings() const { return !surroundings_C_.empty(); }
+  [[nodiscard]] bool has_measured_current() const { return current_A_ != nullptr; }
 
  private:
   /// Current in A for a log with torque but no current. The drag opposes the motion and adds to the torque.

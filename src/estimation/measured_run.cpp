@@ -232,6 +232,7 @@ class Builder {
     MeasuredRun run;
     run.sensors = sensors_;
     run.signals = signals_;
+    run.is_current_measured = rows_.has_measured_current();
     run.conditions = recording_.conditions;
     run.conditions.emplace("run", recording_.name);
     const std::vector<double>& time_s = recording_.time_s;

@@ -41,6 +41,7 @@ struct MeasuredRun {
   std::vector<Sensor> sensors;
   Eigen::MatrixXd measured_C;            ///< n × sensors; NaN: not measured
   std::vector<thermal::Signal> signals;  ///< quantities of the operating points that were measured
+  bool is_current_measured = false;      ///< false also if it was computed from the torque
   /// Conditions of the recording, and "run" with the recording's name.
   std::map<std::string, std::string> conditions;
   std::map<std::string, Eigen::VectorXd> columns;  ///< result of columns_along()

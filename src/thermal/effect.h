@@ -32,6 +32,7 @@ struct Candidacy {
   std::string_view family;      ///< name of the group while the exact law is undetermined: "speed loss at the stator"
   std::string_view experiment;  ///< measurement that separates it from the effects it is confounded with
   bool is_anywhere = false;     ///< tried at every node, also in a network of only two nodes
+  bool is_in_current = false;   ///< a measured current contains the effect: tried only if the current follows from the torque
 };
 
 /// A hand-calculated example of the equation; a test runs it for every effect.

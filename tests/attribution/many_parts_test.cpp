@@ -164,6 +164,22 @@ TEST(ManyParts, HeatInABodyOfTheFileNeedsASensorThere) {
   }
 }
 
+/// A measured current contains the effect of weaker magnets. A current that follows from the torque does not.
+TEST(ManyParts, WeakerMagnetsNeedACurrentThatWasNotMeasured) {
+  for (const bool is_measured : {true, false}) {
+    const Case one;
+    diagnosis::DiagnosisInput input = question(one, record(one));
+    for (estimation::MeasuredRun& run : input.train) {
+      EXPECT_TRUE(run.is_current_measured);
+      run.is_current_measured = is_measured;
+    }
+    const CandidateList list = candidates_for(input.model, input.train);
+    const auto is_magnet = [](const Candidate& each) { return each.id == "magnet_weakening"; };
+    EXPECT_EQ(std::ranges::any_of(list.candidates, is_magnet), !is_measured);
+    EXPECT_EQ(std::ranges::count(list.not_judged, "magnet_weakening", &UntestedEffect::effect), is_measured ? 1 : 0);
+  }
+}
+
 TEST(ManyParts, HideNothingThatWholeRunsTell) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     Case one = loose(seed);

@@ -32,7 +32,7 @@ EffectType magnet_weakening() {
       .typical = "0.001 to 0.0012 1/K: 14 % more copper loss at 60 K",
       .confounded_with =
           "Confounded with a temperature coefficient of the resistance that is too low. If the current was measured, the measurement "
-          "already contains the effect: then check the coefficient first.",
+          "already contains the effect, and diagnose does not test it.",
       // ΔT = 1.5 K: soft part (1.5 + √(1.5² + 2²))/2 = (1.5 + 2.5)/2 = 2 K; 2 · 0.001/K · 2 K · 10 W = 0.04 W
       .example = {.parameters = {0.001}, .at = {.copper_loss_W = 10.0}, .temperature_C = {60.0, 26.5}, .expected_heat_W = {0.04, 0.0}},
       .laws = laws<MagnetWeakening>(),
@@ -40,7 +40,8 @@ EffectType magnet_weakening() {
       .candidacy = {.size_parameter = temperature_coefficient,
                     .variants = {{0.0012}},
                     .family = "extra copper loss",
-                    .experiment = "the back-EMF per speed, cold and hot; the same torque demand from a cold and from a hot motor"},
+                    .experiment = "the back-EMF per speed, cold and hot; the same torque demand from a cold and from a hot motor",
+                    .is_in_current = true},
   };
 }
 
