@@ -36,7 +36,7 @@ std::vector<DesignRun> design(const thermal::Network& network, const std::vector
 /// Returns the prior of the model's coordinates relative to their present values.
 ThetaPrior prior_here(const Model& model);
 
-/// Returns the start temperature of every state node in °C, from the first samples. A node without a sensor gets the mean of the sensors.
+/// Returns the start temperature of every state node in °C, from the first samples. Rule for a node without a sensor: start_of().
 std::vector<double> measured_start_C(const thermal::Network& network, const MeasuredRun& run);
 
 /// Products of the whitened columns, summed over all runs for one assumed unknown heat. The start temperatures are eliminated.

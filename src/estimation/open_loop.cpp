@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "estimation/thresholds.h"
+#include "motor/datasheet_network.h"
 
 namespace heatsoak::estimation {
 
@@ -14,6 +15,7 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
+  constexpr double kBody_K = 2.0;
   const double ambient_C = run.at.front().ambient_C;
   RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
   double sum_C = 0.0;
@@ -30,9 +32,13 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   }
   for (Eigen::Index node = 0; node < states; ++node) {
     if (std::isnan(start.state_C[node])) {
-      // The motor may just have been used: an unmeasured node may differ from the sensors as much as these differ from ambient.
-      start.state_C[node] = seen > 0 ? sum_C / seen : ambient_C;
-      start.prior_sd_K[node] = kSensed_K + std::abs(start.state_C[node] - ambient_C);
+      const double sensors_C = seen > 0 ? sum_C / seen : ambient_C;
+      const double above_K = std::abs(sensors_C - ambient_C);
+      // A body of an effect is anywhere between ambient and sensors. Winding or stator may also be warmer: the motor may just have been
+      // used.
+      const bool is_body = node >= motor::states::first_own;
+      start.state_C[node] = is_body ? 0.5 * (sensors_C + ambient_C) : sensors_C;
+      start.prior_sd_K[node] = is_body ? kBody_K + above_K / std::sqrt(12.0) : kSensed_K + above_K;
     }
   }
   start.prior_C = start.state_C;
@@ -41,9 +47,10 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
 
 namespace {
 
-/// Returns the number of samples that determine the start: five, or more if a state node has no sensor, since its temperature shows later.
+constexpr Eigen::Index kFew = 5;  ///< samples that determine the start of nodes with a sensor
+
+/// Returns the number of samples that determine the start: kFew, or more if a state node has no sensor, since its temperature shows later.
 Eigen::Index deciding_samples(const thermal::Network& network, const MeasuredRun& run) {
-  constexpr Eigen::Index kFew = 5;
   bool all_are_sensed = true;
   for (int node = 0; node < network.state_count(); ++node) {
     all_are_sensed = all_are_sensed && run.sensor_at(network.node_name(node));
@@ -70,14 +77,17 @@ DecidedStart decided_start(const thermal::Network& network, const RunStart& star
   // No model predicts the first seconds better than this; with less noise, its error would distort unmeasured nodes.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
+  // A model that is wrong in the first minute is wrong in the same direction, so many samples determine the start no better than a few.
+  const double independent_share = std::min(1.0, static_cast<double>(kFew) / static_cast<double>(beginning.samples()));
   const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);
   Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
   Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
   for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
     if (!std::isnan(path.residual_K[row])) {
       const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % path.sensors())].noise_K);
-      normal += path.by_start.row(row).transpose() * path.by_start.row(row) / (noise_K * noise_K);
-      right += path.by_start.row(row).transpose() * path.residual_K[row] / (noise_K * noise_K);
+      const double weight = independent_share / (noise_K * noise_K);
+      normal += weight * path.by_start.row(row).transpose() * path.by_start.row(row);
+      right += weight * path.by_start.row(row).transpose() * path.residual_K[row];
     }
   }
   const Eigen::MatrixXd covariance_K2 = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));

@@ -19,8 +19,8 @@ struct RunStart {
   Eigen::VectorXd prior_sd_K;
 };
 
-/// Estimates the start temperatures without a fit: the first sample of each sensor; for other nodes the mean of the sensors, or the ambient
-/// temperature if there are none.
+/// Estimates the start temperatures without a fit: the first sample of each sensor; for winding and stator without a sensor the mean of the
+/// sensors; for bodies of effects the middle between that mean and ambient. Without sensors everything is at ambient temperature.
 RunStart start_of(const thermal::Network& network, const MeasuredRun& run);
 
 /// Simulates and linearises the model along a run from given start temperatures.

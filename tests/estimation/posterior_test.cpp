@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.h"
 #include "estimation/free_run_errors.h"
+#include "estimation/open_loop.h"
 #include "runs_for_tests.h"
 
 namespace heatsoak::estimation {
@@ -61,6 +62,34 @@ TEST(Posterior, other_assumptions_widen_the_intervals_and_leave_the_values) {
   EXPECT_TRUE((averaged.covariance.diagonal().array() > alone.covariance.diagonal().array()).all());
   const auto rest_of = [&](const Posterior& fit) { return rms_K(open_loop_errors(fit.model, runs, {})); };
   EXPECT_EQ(rest_of(averaged), rest_of(alone));
+}
+
+/// The first minute hardly shows the temperature of a body without a sensor. Model errors there must not imply an impossible one.
+TEST(FreeRun, a_body_without_a_sensor_starts_between_ambient_and_sensors) {
+  constexpr double kGradient_K = 10.0;
+  for (std::uint64_t stream = 1; stream <= 6; ++stream) {
+    MeasuredRun run = generated_run({}, {.largest_current_A = 14.0}, 7, stream);
+    const Eigen::Index cold = run.samples() / 6;
+    run.time_s.erase(run.time_s.begin(), run.time_s.begin() + cold);
+    run.at.erase(run.at.begin(), run.at.begin() + cold);
+    run.measured_C = Eigen::MatrixXd(run.measured_C.bottomRows(run.measured_C.rows() - cold));
+    run.unknown_inputs.clear();
+    // The true motor has two bodies with a lighter winding.
+    thermal::Network network = two_node_network({.winding_J_per_K = 30.0, .stator_J_per_K = 50.0});
+    const std::vector<std::string> nodes{"stator", "body", "ambient"};
+    const thermal::EffectType& type = *thermal::find_effect("third_node");
+    network.add_effect("third_node", type, nodes, std::vector<double>{0.07, 0.2, 70.0});
+    const std::vector<double> values = network.values();
+    const RunFrom along = [&](std::span<const double> start_C, const MeasuredRun& part) {
+      return linearise(network, values, {}, {}, start_C, part);
+    };
+    const Eigen::VectorXd start_C = decided_start_C(network, start_of(network, run), run, along);
+    const double ambient_C = run.at.front().ambient_C;
+    const double warmest_C = run.measured_C.topRows(5).array().isNaN().select(ambient_C, run.measured_C.topRows(5)).maxCoeff();
+    ASSERT_GT(warmest_C, ambient_C + 10.0);
+    EXPECT_GT(start_C[2], ambient_C - kGradient_K) << stream;
+    EXPECT_LT(start_C[2], warmest_C + kGradient_K) << stream;
+  }
 }
 
 TEST(FreeRunErrors, OfARunThatRunsAwayAreNotKnown) {
