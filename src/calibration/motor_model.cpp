@@ -113,6 +113,8 @@ class ModelBuilder {
   }
 
  private:
+  static constexpr double kGuess_ratio = 1000.0;
+
   /// Frees a parameter within a factor of 30 of its value. Returns its index among the free ones.
   int free(const std::string& parameter) {
     const int place = place_of(all_.model.network, parameter);
@@ -189,9 +191,10 @@ class ModelBuilder {
           continue;
         }
         add("effects." + name, std::string(base::unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+        // The values of an effect are often guesses, so its range and the prior decide, not the bounds of a data sheet's values.
         estimation::FreeParameter& bounded = all_.model.free.back();
-        bounded.low = std::max(bounded.low, spec.range.low);
-        bounded.high = std::min(bounded.high, spec.range.high);
+        bounded.low = std::max(effect.parameters[i].value / kGuess_ratio, spec.range.low);
+        bounded.high = std::min(effect.parameters[i].value * kGuess_ratio, spec.range.high);
       }
       if (!held.empty()) {
         all_.held.emplace_back(EffectHeld{effect.name, std::move(held)});

@@ -10,6 +10,8 @@
 #include <map>
 
 #include "diagnosis/diagnosis_job.h"
+#include "diagnosis/model_file.h"
+#include "estimation/fit.h"
 #include "examination.h"
 #include "scoring.h"
 
@@ -76,6 +78,37 @@ TEST(UnchangedMotor, AFittedValueOutsideItsDeclaredRangeIsReported) {
   EXPECT_THAT(answer.findings, testing::Contains(testing::VariantWith<calibration::OutsideDeclaredRange>(
                                    testing::AllOf(testing::Field(&calibration::OutsideDeclaredRange::parameter, kKey),
                                                   testing::Field(&calibration::OutsideDeclaredRange::value, fitted)))));
+}
+
+/// The file has a body of 140 J/K as an effect, but with a guess of 1.5 J/K: its value is decided by the runs, not by a search bound.
+TEST(UnchangedMotor, ABadGuessOfAnEffectIsNoBound) {
+  Case one;
+  one.training_runs = 2;
+  one.missing = std::ranges::find(subjects(), "third_node", &Subject::name)->make(1.5);
+  const Runs runs = record(one);
+  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("unchanged_motor_guess_{}.toml", getpid());
+  motor::Motor motor = sheet_of(runs.make, file);
+  std::filesystem::remove(file);
+  const auto guess = [](double value) {
+    base::ParameterValue parameter;
+    parameter.value = value;
+    parameter.origin = base::Origin::estimated;
+    parameter.spread = base::Spread{base::Spread::Kind::range, value / 10.0, value * 10.0, true};
+    return parameter;
+  };
+  constexpr double kGuess_J_per_K = 1.5;
+  motor.effects.push_back({"third_node",
+                           thermal::find_effect("third_node"),
+                           {"stator", "third_node", "ambient"},
+                           {guess(0.2), guess(0.4), guess(kGuess_J_per_K)}});
+  motor::refresh_values(motor);
+  std::vector<recording::Recording> logs;
+  std::ranges::transform(runs.training, std::back_inserter(logs), &TrueRun::log);
+  const estimation::Model model = diagnosis::model_of_logs(motor, logs).model;
+  const estimation::Model fitted = estimation::first_fit(model, question(one, runs).train, {.starts = 0}).fit.model;
+  const auto capacity = static_cast<std::size_t>(fitted.network.capacity_index(fitted.network.node("third_node")));
+  EXPECT_GT(fitted.values[capacity], 45.0 * kGuess_J_per_K);
+  EXPECT_LT(fitted.values[capacity], 2.0 * 140.0);
 }
 
 TEST(UnchangedMotor, HasRunsThatAgree) {
