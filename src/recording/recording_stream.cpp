@@ -1,6 +1,7 @@
 #include "recording/recording_stream.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -173,6 +174,9 @@ class RecordingStream::Intake {
     if (!time_ && problems.empty()) {
       problems.add({log_.string(), table_.header_line(), 1}, "time_s", missing_time());
     }
+    if (time_ && sources_.empty() && mapping_.is_canonical() && problems.empty()) {
+      problems.add({log_.string(), table_.header_line(), 1}, "", no_quantity());
+    }
     valid_ = condition(mapping_.valid, mapping_.valid_at, "rows.valid", problems);
     if (!mapping_.run_column.empty()) {
       run_ = condition("'" + mapping_.run_column + "'", mapping_.run_column_at, "runs.column", problems);
@@ -198,6 +202,18 @@ class RecordingStream::Intake {
     }
     const std::string similar = base::did_you_mean("time_s", names);
     return fmt::format("there is no such column{} {}", similar.empty() ? "." : similar, how_to_map());
+  }
+
+  /// Returns the message about a log none of whose columns besides the time is a quantity.
+  [[nodiscard]] std::string no_quantity() const {
+    std::vector<std::string> others;
+    for (const std::string& name : table_.header()) {
+      if (name != time_->quantity().key) {
+        others.push_back(fmt::format("'{}'", name));
+      }
+    }
+    return fmt::format("{} {} not understood; expected names of quantities with their unit, such as winding_C and current_A. {}",
+                       fmt::join(others, ", "), others.size() == 1 ? "is" : "are", how_to_map());
   }
 
   [[nodiscard]] std::string how_to_map() const {

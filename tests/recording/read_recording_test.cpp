@@ -160,6 +160,13 @@ TEST(ReadRecording, FilesThatAreNoLogs) {
   EXPECT_THAT(failure_of("time_s,winding_C\n0,\n1,nan\n"), HasSubstr("no quantity except the time contains a number"));
 }
 
+TEST(ReadRecording, ColumnsThatAreNoQuantitiesAreNamedWithAMapping) {
+  EXPECT_THAT(failure_of("time_s,motor temp [C],current [A]\n0,20,1\n1,21,2\n"),
+              testing::AllOf(HasSubstr(":1:1: error: 'motor temp [C]', 'current [A]' are not understood; expected names of quantities"),
+                             HasSubstr("[quantities]\n"), HasSubstr("current_A = { column = \"current [A]\", unit = \"A\" }"),
+                             testing::Not(HasSubstr("Required: time_s"))));
+}
+
 TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
   const auto code_of = [](const std::string& text) {
     RecordingReport report;
@@ -172,6 +179,7 @@ TEST(ReadRecording, ExitCodesTellWhatIsWrong) {
   };
   EXPECT_EQ(code_of("time_s,winding_C\n5,20\n4,20\n3,20\n"), base::ExitCode::bad_input);
   EXPECT_EQ(code_of("time_s,winding_C\n0,\n1,nan\n"), base::ExitCode::cannot_answer);
+  EXPECT_EQ(code_of("time_s,temperature\n0,20\n1,21\n"), base::ExitCode::bad_input);
 }
 
 /// Any damaged log must give a consistent recording or a Failure with the reason.
