@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "base/collected_failures.h"
@@ -25,6 +26,9 @@ namespace {
 
 /// Ratio to the value that the nominal voltage can produce. A larger current or speed is probably in another unit.
 constexpr double kMost_ratio = 3.0;
+
+/// Key of the problem that no temperature can be compared with the model.
+constexpr const char* kNoSensor = "winding_C";
 
 /// Throws RowsGivenTwice if two logs share rows. A run that counts twice makes the confidence intervals too narrow; a fitted run
 /// cannot serve as hold-out run.
@@ -226,6 +230,20 @@ bool has_any(const std::vector<recording::Lack>& lacks) {
   return std::ranges::any_of(lacks, [](const recording::Lack& each) { return (std::holds_alternative<Kinds>(each) || ...); });
 }
 
+/// Returns what a log that is only predicted lacks for a comparison: temperatures that change. A log without any is not among them.
+std::vector<recording::Lack> lacks_of_comparison(const recording::Recording& recording, const std::vector<recording::Lack>& lacks,
+                                                 const estimation::MeasuredRunOptions& how) {
+  const std::vector<base::Diagnostic> columns = estimation::lacking_columns(recording, how);
+  if (std::ranges::find(columns, kNoSensor, &base::Diagnostic::key) == columns.end() || !has_any<recording::TemperatureIsConstant>(lacks)) {
+    return {};
+  }
+  std::vector<recording::Lack> found;
+  std::ranges::copy_if(lacks, std::back_inserter(found), [](const recording::Lack& each) {
+    return std::holds_alternative<recording::TemperatureIsConstant>(each) || std::holds_alternative<recording::TooFewRows>(each);
+  });
+  return found;
+}
+
 /// Checks the logs one by one and collects what is wrong with them.
 class Admitting {
  public:
@@ -245,7 +263,12 @@ class Admitting {
       look(recording, quality, quality.thermal.lacks);
     }
     for (const recording::Recording& recording : held_out) {
-      look(recording, recording::assess(recording, {}, ambient_C_), {});
+      const recording::DataQuality quality = recording::assess(recording, {}, ambient_C_);
+      const std::vector<recording::Lack> lacks = lacks_of_comparison(recording, quality.thermal.lacks, how_to_read(motor_, HeatInput::current));
+      if (!lacks.empty()) {
+        without_heat_.push_back({recording.file, lacks});
+      }
+      look(recording, quality, lacks);
     }
     failures.attempt([&] { throw_findings(); });
     failures.throw_if_any();
@@ -283,7 +306,7 @@ class Admitting {
     how.ambient_C = ambient_C_;
     const bool lacks_temperature = has_any<recording::NoTemperature, recording::TemperatureIsConstant>(known);
     for (base::Diagnostic& each : estimation::lacking_columns(recording, how)) {
-      if (!lacks_temperature || each.key != "winding_C") {
+      if (!lacks_temperature || each.key != kNoSensor) {
         lacking_.push_back(std::move(each));
       }
     }

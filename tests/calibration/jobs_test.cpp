@@ -56,6 +56,27 @@ TEST(Jobs, AllLogsWithoutHeatAreReportedAtOnce) {
   }
 }
 
+TEST(Jobs, APredictedLogWhoseTemperaturesNeverChangeIsReportedAsAFittedOne) {
+  const recording::NamedLogs logs = recording::read_usable_logs({(kSource / "reports/soak/bench.csv").string()}, {}, {});
+  recording::Recording constant = logs.fitted[0];
+  for (recording::Channel& channel : constant.channels) {
+    if (channel.quantity.key == "winding_C" || channel.quantity.key == "stator_C") {
+      channel.values.assign(constant.rows(), 60.0);
+    }
+  }
+  for (const recording::Recording& held_out : {constant, logs.fitted[0].slice(0, 1)}) {
+    try {
+      admit(motor::read_motor(kSource / "motor_db/maxon_ec45_flat_70w_24v.toml"), {}, std::vector{held_out}, false);
+      FAIL() << held_out.rows();
+    } catch (const recording::NothingAboutHeat& failure) {
+      EXPECT_EQ(failure.code(), base::ExitCode::cannot_answer);
+      ASSERT_EQ(failure.logs().size(), 1U);
+      EXPECT_THAT(failure.logs()[0].lacks, Contains(VariantWith<recording::TemperatureIsConstant>(testing::_)));
+      EXPECT_EQ(failure.logs()[0].lacks.size(), held_out.rows() == 1 ? 2U : 1U);
+    }
+  }
+}
+
 std::vector<std::string> kinds_of(const base::SeveralFailures& several) {
   std::vector<std::string> kinds;
   for (const auto& [failure, thrown] : several.parts()) {
