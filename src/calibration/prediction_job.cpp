@@ -12,13 +12,17 @@ namespace {
 
 std::vector<PredictionWarning> warnings_of(const motor::MotorFit& fit, const std::vector<recording::Recording>& recordings) {
   std::vector<PredictionWarning> warnings;
+  FittedRuns fitted;
   for (const recording::Recording& recording : recordings) {
     for (OutsideTraining& each : outside(fit.training, recording)) {
       warnings.emplace_back(std::move(each));
     }
     if (was_fitted_to(fit, recording)) {
-      warnings.emplace_back(FittedRun{recording.name});
+      fitted.recordings.push_back(recording.name);
     }
+  }
+  if (!fitted.recordings.empty()) {
+    warnings.emplace_back(std::move(fitted));
   }
   return warnings;
 }

@@ -17,11 +17,11 @@ struct PredictionJob {
   recording::NamedLogs logs;  ///< `held_out` is predicted; no log is fitted
 };
 
-/// The model was fitted to this recording, so its error is not a forecast error.
-struct FittedRun {
-  std::string recording;
+/// The model was fitted to these recordings, so their errors are not forecast errors.
+struct FittedRuns {
+  std::vector<std::string> recordings;  ///< at least one
 };
-using PredictionWarning = std::variant<OutsideTraining, FittedRun, SignalsMissing>;
+using PredictionWarning = std::variant<OutsideTraining, FittedRuns, SignalsMissing>;
 
 struct PredictionAnswer {
   Prediction prediction;

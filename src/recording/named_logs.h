@@ -19,7 +19,7 @@ struct LogChoice {
   bool takes_logs_as_they_are = false;   ///< accept logs whose units or sensors look wrong
 };
 
-/// Omitted samples and other remarks of one log; parts of one log have one entry each.
+/// Omitted samples and other remarks of one log; parts of one log share one entry.
 struct LogReading {
   std::string log;  ///< stem of the file
   RecordingReport report;
@@ -33,8 +33,8 @@ struct NamedLogs {
   base::CollectedFailures unread;    ///< failures of the logs that could not be read
 };
 
-/// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"); names of
-/// fitted logs do not depend on the hold-out logs. Does not throw because of a log: the caller reports `unread`, with the problems that it
+/// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"), several parts
+/// of one log get the part as a suffix ("run@0-60%"); names of fitted logs do not depend on the hold-out logs. Does not throw because of a log: the caller reports `unread`, with the problems that it
 /// finds in the other logs.
 NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 

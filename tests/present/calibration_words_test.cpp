@@ -157,11 +157,19 @@ TEST(Calibration, JsonKeepsTheSeverityOfWarnings) {
 
 TEST(Prediction, JsonKeepsTheSeverityOfWarnings) {
   calibration::PredictionAnswer answer;
-  answer.warnings = {calibration::FittedRun{"bench.csv"}};
+  answer.warnings = {calibration::FittedRuns{{"bench.csv"}}};
   const Json json = prediction_json({}, answer, {});
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_THAT(json["warnings"][0].get<std::string>(), HasSubstr("the error of bench.csv is not a forecast error"));
   EXPECT_EQ(json["notes"], json["warnings"]);
+}
+
+TEST(Prediction, OneWarningNamesAllFittedRuns) {
+  calibration::PredictionAnswer answer;
+  answer.warnings = {calibration::FittedRuns{{"bench@0-10%", "bench@50-60%"}}};
+  const std::vector<Note> notes = prediction_notes(answer, {});
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0].words, HasSubstr("the errors of bench@0-10%, bench@50-60% are not forecast errors"));
 }
 
 }  // namespace

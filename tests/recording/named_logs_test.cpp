@@ -56,9 +56,33 @@ TEST_F(NamedLogsTest, PartsOfOneLogKeepItsNameAndShareTheTime) {
   EXPECT_EQ(parts.held_out[0].name, "run");
   EXPECT_NEAR(parts.fitted[0].time_s.back(), 60.0, 1.0);
   EXPECT_NEAR(parts.held_out[0].time_s.front(), 60.0, 1.0);
-  EXPECT_EQ(parts.readings.size(), 2U);
+  EXPECT_EQ(parts.readings.size(), 1U) << "the report of the whole log would be printed once per part";
   EXPECT_TRUE(parts.fitted[0].blocking_of_whole);
   EXPECT_THROW(read_all({log("monday") + "@70-20%"}, {}, {}), base::Failure);
+}
+
+TEST_F(NamedLogsTest, SeveralPartsOfOneLogAreNamedWithTheirPart) {
+  const NamedLogs parts = read_all({log("monday") + "@0-20%", log("monday") + "@20-40%", log("tuesday") + "@0-20%"},
+                                   {log("monday") + "@60-80%", log("monday") + "@80-100%"}, {});
+  EXPECT_EQ(parts.fitted[0].name, "monday/run@0-20%");
+  EXPECT_EQ(parts.fitted[1].name, "monday/run@20-40%");
+  EXPECT_EQ(parts.fitted[2].name, "tuesday/run");
+  EXPECT_EQ(parts.held_out[0].name, "monday/run@60-80%");
+  EXPECT_EQ(parts.held_out[1].name, "monday/run@80-100%");
+}
+
+TEST_F(NamedLogsTest, TheRefusalOfAPartSaysWhatIsWrongWithIt) {
+  for (const auto& [part, says] : {std::pair("@60-40%", "the part ends at 40 %, before its begin at 60 %; expected LOG@FROM-TO%"),
+                                   std::pair("@50-50%", "the part begins and ends at 50 %; expected"),
+                                   std::pair("@0-150%", "the part is not within 0 to 100 % of the log"),
+                                   std::pair("@0-nan%", "the part has no number")}) {
+    try {
+      read_all({log("monday") + part}, {}, {});
+      FAIL() << part;
+    } catch (const base::Failure& failure) {
+      EXPECT_THAT(failure.what(), testing::HasSubstr(says));
+    }
+  }
 }
 
 TEST_F(NamedLogsTest, APartThatIsNoneOrHasNoRowsIsRefused) {

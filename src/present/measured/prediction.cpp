@@ -30,8 +30,11 @@ std::string say(const calibration::Extrapolation& of) {
                      base::significant(of.value, 3), of.unit, base::significant(of.low, 3), base::significant(of.high, 3), of.unit);
 }
 
-std::string say(const calibration::FittedRun& of) {
-  return fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", of.recording);
+std::string say(const calibration::FittedRuns& of) {
+  const std::string names = fmt::format("{}", fmt::join(of.recordings, ", "));
+  return of.recordings.size() == 1
+             ? fmt::format("the error of {} is not a forecast error, because the model was fitted to this run", names)
+             : fmt::format("the errors of {} are not forecast errors, because the model was fitted to these runs", names);
 }
 
 std::string say(const calibration::SignalsMissing& of) { return words_of(calibration::CalibrationFinding(of)); }
