@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -131,6 +132,23 @@ const CLI::App* verb_of(const CLI::App& app, std::span<const char* const> words)
   return nullptr;
 }
 
+/// Returns a complaint about each option whose value is missing because the next option follows. CLI11 would take that option as the value.
+std::vector<std::string> options_without_value(const CLI::App& verb, std::span<const char* const> words) {
+  std::vector<std::string> complaints;
+  const auto option_of = [&verb](std::string_view word) {
+    return word.starts_with("--") ? verb.get_option_no_throw(std::string(word.substr(0, word.find('=')))) : nullptr;
+  };
+  for (std::size_t i = 0; i + 1 < words.size() && std::string_view(words[i]) != "--"; ++i) {
+    const std::string_view word = words[i];
+    const CLI::Option* const option = option_of(word);
+    const bool has_value = option == nullptr || word.find('=') != std::string_view::npos || option->get_items_expected_min() == 0;
+    if (!has_value && option_of(words[i + 1]) != nullptr) {
+      complaints.push_back(fmt::format("{} has no value; expected {} before {}", word, option->get_type_name(), words[i + 1]));
+    }
+  }
+  return complaints;
+}
+
 bool takes_one_value(const CLI::Option& option) {
   return option.get_items_expected_max() == 1 && option.get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
 }
@@ -176,6 +194,9 @@ void check_words(const CLI::App& app, std::span<const char* const> words) {
     } else if (name.starts_with("--") && verb && takes_one_value(*verb->get_option_no_throw(name)) && ++given[name] == 2) {
       unknown.push_back(fmt::format("{} is given more than once; expected one value: remove the others", name));
     }
+  }
+  if (verb) {
+    std::ranges::move(options_without_value(*verb, words), std::back_inserter(unknown));
   }
   if (!unknown.empty()) {
     throw base::Failure(base::ExitCode::bad_input, fmt::format("{}", fmt::join(unknown, "\n")));
