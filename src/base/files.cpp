@@ -290,6 +290,12 @@ void write_files(std::span<const OutputFile> files, std::span<const std::unique_
   }
 }
 
+void require_writable(const std::filesystem::path& path) {
+  if (const OutputTarget target = target_of(path); !target.in_place) {
+    const UnfinishedFile never_published(target.path, false);
+  }
+}
+
 void write_file(const std::filesystem::path& path, std::string_view content) {
   const OutputFile file{path, std::string(content)};
   write_files({&file, 1});

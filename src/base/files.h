@@ -50,6 +50,10 @@ class StreamedFile {
 /// Throws Failure (bad_input) on errors and if two outputs have the same target.
 void write_files(std::span<const OutputFile> files, std::span<const std::unique_ptr<StreamedFile>> streamed = {});
 
+/// Throws Failure (bad_input) as write_files() would if a file of this name cannot be written. Leaves nothing on the disk, and does not
+/// open a device or pipe.
+void require_writable(const std::filesystem::path& path);
+
 /// Writes one file in the same way.
 void write_file(const std::filesystem::path& path, std::string_view content);
 

@@ -71,12 +71,16 @@ class Session {
   /// If only the inputs are read, throws Failure (bad_input) with all the files that cannot be read; otherwise they are reported when they
   /// are read. `names` as input::log_named() resolves them.
   void require_readable(const std::vector<std::string>& names) const;
-  /// Marks the end of a command's inputs: their mistakes are reported, and the computation begins.
-  void begin_computation() const {
-    if (stops_at_computation_) {
-      throw InputsRead();
-    }
+  /// Adds a file that the command will write after its computation, in `folder` if that is a folder of its own.
+  void expect_output(const std::filesystem::path& path, const std::filesystem::path& folder = {}) {
+    expected_files_.push_back(path);
+    expected_folder_ = folder.empty() ? expected_folder_ : folder;
   }
+  /// Declares that no file is written, whatever the options name.
+  void write_no_files() { writes_files_ = false; }
+  /// Marks the end of a command's inputs: their mistakes are reported, and the computation begins. Throws Failure (bad_input) if an expected
+  /// output cannot be written or would overwrite an input: a computation of minutes must not be lost at its end.
+  void begin_computation() const;
   void stop_at_computation() { stops_at_computation_ = true; }
   [[nodiscard]] bool stops_at_computation() const { return stops_at_computation_; }
   void finish();
@@ -92,6 +96,7 @@ class Session {
 
  private:
   void add_json(const present::Document& document);
+  void refuse_to_overwrite(const std::vector<std::filesystem::path>& files) const;
   /// Returns the names of all files that are added so far.
   [[nodiscard]] std::vector<std::string> names_of_added() const;
 
@@ -104,6 +109,9 @@ class Session {
   std::string text_;       ///< contains no control characters except colours
   std::string beside_;     ///< text of say() beside a report on stdout: for stderr
   std::string json_text_;  ///< for stdout
+  std::vector<std::filesystem::path> expected_files_;
+  std::filesystem::path expected_folder_;
+  bool writes_files_ = true;
   std::vector<std::filesystem::path> folders_;
   std::vector<base::OutputFile> files_;
   std::vector<base::OutputFile> rewritten_;

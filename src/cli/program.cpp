@@ -124,6 +124,16 @@ void refuse_one_file_for_two(const CLI::App& verb, Session& session) {
   }
 }
 
+/// Adds the files that the options name; a folder is left to its command, which knows its files.
+void expect_outputs(const CLI::App& verb, Session& session) {
+  for (const char* const name : kOutputs) {
+    const CLI::Option* const option = verb.get_option_no_throw(name);
+    if (option && !option->empty() && option->results().front() != "-" && option->get_type_name() != "DIR") {
+      session.expect_output(option->results().front());
+    }
+  }
+}
+
 /// Called before any computation: an answer that takes minutes must not be lost because its picture cannot be drawn.
 void require_drawing_for(const CLI::App& verb) {
   const CLI::Option* const plot = verb.get_option_no_throw("--plot");
@@ -153,6 +163,7 @@ void declare_commands(CLI::App& app, Session& session, base::ExitCode& code) {
     verb->callback([run, verb, &session, &code] {
       refuse_one_file_for_two(*verb, session);
       require_drawing_for(*verb);
+      expect_outputs(*verb, session);
       code = run();
     });
   }
@@ -257,6 +268,7 @@ present::Json answer_of(const std::vector<std::string>& words, const std::filesy
   const std::vector<std::string> all = with_database(words, database);
   const WorkingFolder here(folder.empty() ? "." : folder);
   Session session;
+  session.write_no_files();
   run_words(all, session);
   present::Json answer = session.stdout_json();
   if (answer.is_null()) {

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/collected_failures.h"
 #include "base/files.h"
 #include "cli/command.h"
 #include "cli/terminal.h"
@@ -135,19 +136,13 @@ void Session::add_json(const present::Document& document) {
   }
 }
 
-void Session::finish() {
-  after_failure_.clear();  // a failure from here on concerns the files themselves
+/// Throws Failure (bad_input) with all files that the command has read, and with a JSON target that is another file of the user.
+void Session::refuse_to_overwrite(const std::vector<std::filesystem::path>& files) const {
   std::vector<base::Diagnostic> read;
-  const auto check = [&read](const std::filesystem::path& path) {
+  for (const std::filesystem::path& path : files) {
     if (base::is_input(path)) {
       read.push_back({{path.string()}, {}, "this command reads the file and would overwrite it; give the output another name"});
     }
-  };
-  for (const auto& each : streams_) {
-    check(each->path());
-  }
-  for (const base::OutputFile& each : files_) {
-    check(each.path);
   }
   if (read.empty() && !json_target_.empty() && !may_take_json(json_target_)) {
     read.push_back({{json_target_}, {}, "is not an answer of this program, and --json would overwrite it; give the answer another name"});
@@ -155,6 +150,35 @@ void Session::finish() {
   if (!read.empty()) {
     throw base::Failure(base::ExitCode::bad_input, "", std::move(read));
   }
+}
+
+void Session::begin_computation() const {
+  if (stops_at_computation_) {
+    throw InputsRead();
+  }
+  if (!writes_files_) {
+    return;
+  }
+  refuse_to_overwrite(expected_files_);
+  const std::vector<std::filesystem::path> made =
+      expected_folder_.empty() ? std::vector<std::filesystem::path>{} : made_folders({expected_folder_});
+  base::CollectedFailures failures;
+  for (const std::filesystem::path& each : expected_files_) {
+    failures.attempt([&each] { base::require_writable(each); });
+  }
+  for (const std::filesystem::path& folder : made) {
+    std::error_code in_use;
+    std::filesystem::remove(folder, in_use);
+  }
+  failures.throw_if_any();
+}
+
+void Session::finish() {
+  after_failure_.clear();  // a failure from here on concerns the files themselves
+  std::vector<std::filesystem::path> written;
+  std::ranges::transform(streams_, std::back_inserter(written), [](const auto& each) { return each->path(); });
+  std::ranges::transform(files_, std::back_inserter(written), &base::OutputFile::path);
+  refuse_to_overwrite(written);
   const std::vector<std::filesystem::path> made = made_folders(folders_);
   files_.insert(files_.end(), rewritten_.begin(), rewritten_.end());
   try {

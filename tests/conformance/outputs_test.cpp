@@ -4,6 +4,7 @@
 
 #include "program_run.h"
 #include "short_runs.h"
+#include "support/source_folder.h"
 
 namespace heatsoak {
 namespace {
@@ -45,6 +46,31 @@ TEST(Unwritable, target_is_reported_and_leaves_nothing) {
     }
   }
   EXPECT_TRUE(fs::is_empty(folder.path() / "taken.svg"));
+}
+
+// A log that cannot be read is reported by the computation; the output is refused before it.
+TEST(Unwritable, target_is_refused_before_the_computation) {
+  const TemporaryFolder folder;
+  const std::string motor = "maxon_ec45_flat_70w_24v";
+  write(folder.path() / "model.toml", content_of(kSource / "motor_db" / (motor + ".toml")));
+  write(folder.path() / (motor + ".toml"), content_of(kSource / "motor_db" / (motor + ".toml")));
+  const RunOptions inside{.folder = folder.path()};
+  const std::vector<std::string> before = folder.names();
+  const auto expect_refused = [&](const Words& words, const char* says) {
+    const ProgramRun result = run(words, inside);
+    EXPECT_EQ(result.exit_code, 2) << result.out;
+    EXPECT_THAT(result.err, testing::AllOf(HasSubstr(says), Not(HasSubstr("missing.csv")))) << testing::PrintToString(words);
+    EXPECT_EQ(folder.names(), before);
+  };
+  const Words diagnose{"diagnose", "--train", "missing.csv", "--model"};
+  const Words calibrate{"calibrate", "missing.csv", "--motor"};
+  expect_refused(diagnose + Words{motor, "--out", "/proc/x/y"}, "the folder cannot be made");
+  expect_refused(diagnose + Words{"model.toml", "--out", "model.toml"}, "the folder cannot be made");
+  expect_refused(diagnose + Words{"./" + motor + ".toml", "--out", "."}, "this command reads the file and would overwrite it");
+  expect_refused(diagnose + Words{motor, "--out", "new", "--report", "no_such_folder/a.md"}, "cannot be written");
+  expect_refused(calibrate + Words{motor, "--out", "/no_such_folder/x.toml"}, "cannot be written");
+  expect_refused(calibrate + Words{"model.toml", "--out", "model.toml"}, "this command reads the file and would overwrite it");
+  expect_refused(calibrate + Words{motor, "--out", "x.toml", "--json", "model.toml"}, "--json would overwrite it");
 }
 
 TEST(Unwritable, full_disk_is_reported_and_the_device_survives) {

@@ -50,6 +50,11 @@ base::ExitCode run(const DiagnoseOptions& options, Session& session) {
   const diagnosis::DiagnosisJob job{duty::motor_named(session.folders(), options.model),
                                     recording::read_usable_logs(options.train, options.holdout, choice_of(options.logs, session))};
   require_read(job.logs, session);
+  if (!options.out.empty()) {
+    for (const std::string& name : {job.motor.id + ".toml", std::string("diagnosis.json"), std::string("diagnosis.html")}) {
+      session.expect_output(std::filesystem::path(options.out) / name, options.out);
+    }
+  }
   const diagnosis::DiagnosisAnswer answer =
       with_progress(session, [&](const base::JobProgress& progress) { return diagnosis::run_diagnosis(job, progress); });
   const std::vector<recording::LogReading>& readings = job.logs.readings;
