@@ -13,6 +13,7 @@
 #include "diagnosis/coverage.h"
 #include "diagnosis/left_out_band.h"
 #include "estimation/log_columns.h"
+#include "estimation/log_rows.h"
 #include "estimation/open_loop.h"
 #include "estimation/turning_rows.h"
 
@@ -24,17 +25,26 @@ const std::string kContradiction = "comparing the runs with each other";
 const std::string kBand = "predicting left-out runs";
 const std::string kScoring = "predicting the runs";
 
-std::vector<estimation::MeasuredRun> runs_of(const std::vector<recording::Recording>& recordings,
-                                             const estimation::MeasuredRunOptions& options, std::vector<DiagnosisFinding>& findings) {
-  std::vector<estimation::MeasuredRun> all;
-  base::CollectedFailures failures;
+struct RunsOfLogs {
+  std::vector<estimation::MeasuredRun> runs;
+  std::vector<DiagnosisFinding> findings;
+};
+
+/// Reads the runs of the recordings; the caller throws `failures`. A log without a speed is accepted, as if no log had one: its loss at speed
+/// is unknown heat.
+RunsOfLogs runs_of(const std::vector<recording::Recording>& recordings, const estimation::MeasuredRunOptions& options,
+                   base::CollectedFailures& failures) {
+  RunsOfLogs all;
   for (const recording::Recording& recording : recordings) {
-    if (std::optional<estimation::MeasuredRuns> runs = failures.attempt([&] { return estimation::measured_runs(recording, options); })) {
-      std::ranges::move(runs->notes, std::back_inserter(findings));
-      std::ranges::move(runs->runs, std::back_inserter(all));
+    estimation::MeasuredRunOptions here = options;
+    if (!estimation::has_signal(recording, thermal::Signal::speed)) {
+      std::erase(here.needed, thermal::Signal::speed);
+    }
+    if (std::optional<estimation::MeasuredRuns> runs = failures.attempt([&] { return estimation::measured_runs(recording, here); })) {
+      std::ranges::move(runs->notes, std::back_inserter(all.findings));
+      std::ranges::move(runs->runs, std::back_inserter(all.runs));
     }
   }
-  failures.throw_if_any();
   return all;
 }
 
@@ -109,7 +119,13 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   DiagnosisInput& input = answer.input;
   input.model = model.model;
   input.usual = model.usual;
-  input.train = runs_of(fitted, how, findings);
+  // The hold-out logs are read here only to refuse what cannot be read before the fit.
+  base::CollectedFailures unreadable;
+  RunsOfLogs training = runs_of(fitted, how, unreadable);
+  RunsOfLogs holdout = runs_of(held_out, how, unreadable);
+  unreadable.throw_if_any();
+  std::ranges::move(training.findings, std::back_inserter(findings));
+  input.train = std::move(training.runs);
   input.progress = progress;
   const double unit_s = calibration::usual_s(input.train);
   const std::vector<base::JobPhase> last{
@@ -146,7 +162,8 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   }
   progress.begin(kScoring);
   answer.score = score_holdout({job.motor, refitted_motor(job.motor, model, answer.diagnosis), answer.motor}, held_out, predicting);
-  answer.score.runs = runs_of(held_out, how, findings);
+  answer.score.runs = std::move(holdout.runs);
+  std::ranges::move(holdout.findings, std::back_inserter(findings));
   if (input.turns_within_rows) {
     std::ranges::transform(answer.score.runs, answer.score.runs.begin(), estimation::turning_within_rows);
   }

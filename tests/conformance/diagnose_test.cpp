@@ -243,6 +243,19 @@ TEST(Diagnose, NamesNoEffectInPlaceOfAnUnloggedSpeed) {
   EXPECT_LT(error_K("after"), error_K("before"));
 }
 
+TEST(Diagnose, TakesALogWithoutSpeedBesideOthers) {
+  const TemporaryFolder folder;
+  const auto without_speed = [&](const char* name) {
+    return changed_log(folder, name, [](int, std::vector<std::string>& cells) { cells.resize(kCurrent + 1); });
+  };
+  const ProgramRun fitted = run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), log("bench.csv"), "--explain"}, in(folder));
+  EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+  EXPECT_THAT(fitted.out, HasSubstr("not every log has a speed"));
+  const ProgramRun held_out =
+      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", without_speed("match_3.csv")}, in(folder));
+  EXPECT_EQ(held_out.exit_code, 0) << held_out.err;
+}
+
 TEST(Diagnose, NamesTheLogUnderWhichTheModelRunsAway) {
   const TemporaryFolder folder;
   const std::string file = changed_log(folder, "match_3.csv", [](int line, std::vector<std::string>& cells) {
