@@ -80,11 +80,16 @@ bool never_falls(const Channel& channel, double degree) {
   return percentile(channel.values, 0.02) > coolest_at_start(channel) - kFalls_K * degree;
 }
 
+bool is_constant(const Channel& channel) { return percentile(channel.values, 0.0) == percentile(channel.values, 1.0); }
+
 class Scales {
  public:
   Scales(const Recording& recording, std::optional<double> ambient_C)
       : recording_(recording), ambient_(recording.find(kAmbientColumn)), stated_C_(ambient_C) {
     for (const Channel& channel : recording.channels) {
+      if (channel.quantity.kind == QuantityKind::temperature && is_constant(channel)) {
+        continue;  // a sensor that does not follow the motor has no scale
+      }
       if (channel.quantity.kind == QuantityKind::temperature) {
         sensors_.push_back(&channel);
       }

@@ -427,6 +427,13 @@ TEST(Suspicions, FahrenheitBesideAStatedRoom) {
   }
 }
 
+/// 85 °C would be a room temperature in degrees Fahrenheit.
+TEST(Suspicions, ConstantSensorIsNotAskedForItsScale) {
+  const Read result = read_text(changed({}, [](int, std::vector<double>& cells) { cells[winding] = 85.0; }));
+  EXPECT_THAT(result.quality.suspicions, ElementsAre(VariantWith<ConstantSensor>(Field(&ConstantSensor::channel, "winding_C"))));
+  EXPECT_THAT(result.quality.blocking, IsEmpty());
+}
+
 /// A log at 60 Hz must not be mistaken for a log in minutes.
 TEST(Suspicions, MinutesByRowsThatNoMotorFollows) {
   SyntheticLog fast;
