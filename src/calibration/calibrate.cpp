@@ -469,7 +469,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
       parameter->derivation = "fit to measured temperatures";
     } else {
       // The value changed together with the others, but its origin is still the earlier one.
-      parameter->source += parameter->source.empty() ? kSource : fmt::format(", {}", kSource);
+      parameter->source = motor::joined_sources(parameter->source, kSource);
       parameter->derivation +=
           fmt::format("{}fit to measured temperatures, which do not determine it alone", parameter->derivation.empty() ? "" : "; ");
     }

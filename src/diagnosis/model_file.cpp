@@ -16,6 +16,7 @@
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
+#include "motor/write_motor.h"
 #include "recording/fingerprint.h"
 
 namespace heatsoak::diagnosis {
@@ -164,7 +165,7 @@ void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const estimat
         source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures; before the fit: {}", source);
     if (!calibration::is_identifiable(sd, each)) {
       parameter.origin = origin;
-      parameter.source += source.empty() ? "" : fmt::format(", {}", source);
+      parameter.source = motor::joined_sources(parameter.source, source);
       parameter.derivation = "fit to measured temperatures, which do not determine it alone";
     }
     together.parameters.push_back(each.name);

@@ -83,6 +83,21 @@ std::string effect_text(const MotorEffect& effect) {
 
 }  // namespace
 
+std::string joined_sources(std::string_view ids, std::string_view more) {
+  constexpr std::string_view kComma = ", ";
+  std::vector<std::string_view> all;
+  for (std::string_view rest : {ids, more}) {
+    while (!rest.empty()) {
+      const std::string_view id = rest.substr(0, rest.find(kComma));
+      if (std::ranges::find(all, id) == all.end()) {
+        all.push_back(id);
+      }
+      rest.remove_prefix(std::min(rest.size(), id.size() + kComma.size()));
+    }
+  }
+  return fmt::format("{}", fmt::join(all, kComma));
+}
+
 std::string to_toml(const Motor& motor) {
   std::string text = fmt::format("manufacturer = {}\nname = {}\n", input::toml_text(motor.manufacturer), input::toml_text(motor.name));
   if (!motor.part_number.empty()) {

@@ -16,6 +16,7 @@
 #include "present/measured/log_words.h"
 #include "present/measured/prediction.h"
 #include "present/measured/run_words.h"
+#include "present/renderer.h"
 #include "sentences_of_kinds.h"
 
 namespace heatsoak::present {
@@ -153,6 +154,18 @@ TEST(Calibration, JsonKeepsTheSeverityOfWarnings) {
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["warnings"][0], words_of(answer.calibration.findings[1]));
   EXPECT_EQ(calibration_document({}, answer, {}, "model.toml").notes.size(), 2U);
+}
+
+TEST(Calibration, TheTableHasUnitsAtEveryWidth) {
+  calibration::CalibrationAnswer answer;
+  answer.calibration.fit.flux.rms_W = {0.0, 0.0};
+  answer.calibration.forecast.emplace();
+  answer.calibration.parameters = {
+      {.name = "effects.a_long_name_of_an_effect.heat_capacity", .unit = "J/K", .before = 400.0, .value = 404.0, .low = 331.0, .high = 492.0}};
+  for (const std::size_t width : {60U, 72U, 80U, 120U}) {
+    const std::string text = terminal_text(calibration_document({}, answer, {}, "model.toml"), {.width = width});
+    EXPECT_THAT(text, HasSubstr("J/K")) << text;
+  }
 }
 
 TEST(Prediction, JsonKeepsTheSeverityOfWarnings) {

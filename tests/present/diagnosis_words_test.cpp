@@ -141,6 +141,16 @@ TEST(WordsOfDiagnosis, IntervalsFromZeroAreNoSizes) {
   EXPECT_THAT(words(), testing::Not(HasSubstr("hardly determine")));
 }
 
+TEST(WordsOfDiagnosis, ASizeWithoutUnitAtItsBoundHasNoBlankBeforeTheComma) {
+  diagnosis::DiagnosisAnswer answer;
+  answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::effect_found;
+  diagnosis::FoundEffect& effect = answer.diagnosis.effects.emplace_back();
+  effect.id = "sensor_gain_winding";
+  effect.node = "winding";
+  effect.parameters = {{"relative_error", "", 0.5, 0.5, 0.5, true}};
+  EXPECT_THAT(testing::PrintToString(diagnosis_words(answer)), HasSubstr("relative_error 0.5, at the bound"));
+}
+
 TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   diagnosis::Diagnosis found;
   diagnosis::FoundEffect deviation;

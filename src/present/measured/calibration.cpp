@@ -27,8 +27,8 @@ Table fitted_parameters(const calibration::Calibration& result) {
                           {"file", "", 2},
                           {"fit", "", 0},
                           {base::level_text(base::kInterval_share) + " interval", "", 0},
-                          {"unit", "", 1, Alignment::left},
-                          {"identifiable", "", 0, Alignment::left}},
+                          {"unit", "", 0, Alignment::left},
+                          {"identifiable", "", 1, Alignment::left}},
               .rows = {}};
   for (const calibration::CalibratedParameter& each : result.parameters) {
     const double half = 0.5 * (each.high - each.low);

@@ -82,8 +82,8 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
       break;
     }
     if (parameter.is_at_bound) {
-      text += fmt::format("; {} {:.3g} {}, at the bound of the search range: another effect may be the cause", parameter.name,
-                          parameter.value, parameter.unit);
+      text += fmt::format("; {} {:.3g}{}{}, at the bound of the search range: another effect may be the cause", parameter.name,
+                          parameter.value, parameter.unit.empty() ? "" : " ", parameter.unit);
       break;
     }
   }
@@ -397,9 +397,9 @@ std::vector<std::string> notes_of_model_file(const diagnosis::Diagnosis& diagnos
       continue;
     }
     const diagnosis::FittedParameter& size = effect.parameters.front();
-    notes.push_back(fmt::format("{} at the {}{}: {} {:.3g} {}; found in measurements, not a property of the motor", effect.id, effect.node,
+    notes.push_back(fmt::format("{} at the {}{}: {} {:.3g}{}{}; found in measurements, not a property of the motor", effect.id, effect.node,
                                 effect.condition.empty() ? "" : fmt::format(" in {}", estimation::in_words(effect.condition)), size.name,
-                                size.value, size.unit));
+                                size.value, size.unit.empty() ? "" : " ", size.unit));
   }
   return notes;
 }
