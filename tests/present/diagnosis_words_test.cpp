@@ -165,13 +165,15 @@ TEST(WordsOfDiagnosis, RunDeviationsAreNotesOfTheModelFile) {
   found.effects = {named, deviation, sensor};
   EXPECT_EQ(
       notes_of_model_file(found),
-      std::vector<std::string>{"heat_share at the winding in run4: deviation -0.305 ; found in measurements, not a property of the motor"});
+      std::vector<std::string>{"heat_share at the winding in run4: deviation -0.305; found in measurements, not a property of the motor"});
 }
 
 TEST(Diagnosis, PageAndJsonKeepTheSeverityOfWarnings) {
   diagnosis::DiagnosisAnswer answer;
   answer.findings = {diagnosis::IntervalsOfDataSheet{}, diagnosis::ExtensionsMayImitate{{"contact_law"}}};
+  answer.diagnosis.effects.emplace_back().id = "sensor_lag_winding";
   const Json json = diagnosis_json(answer, {});
+  EXPECT_EQ(json["effects"][0]["name"], "sensor_lag_winding");
   EXPECT_EQ(json["notes"].size(), 2U);
   ASSERT_EQ(json["warnings"].size(), 1U);
   EXPECT_EQ(json["warnings"][0], words_of(answer.findings[1]));

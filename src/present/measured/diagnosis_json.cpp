@@ -45,7 +45,7 @@ Json effect_json(const diagnosis::FoundEffect& effect) {
                           {"fitted", is_fitted}});
   }
   Json json{{"id", effect.id},
-            {"name", effect.name},
+            {"name", effect.name.empty() ? effect.id : effect.name},
             {"node", effect.node},
             {"parameters", parameters},
             {"condition", effect.condition},
