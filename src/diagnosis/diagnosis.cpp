@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 
 #include "attribution/curve.h"
 #include "attribution/terms.h"
@@ -266,6 +267,24 @@ std::string_view to_string(DiagnosisVerdict verdict) {
       return "not_identifiable";
   }
   return "?";
+}
+
+double net_share(const std::vector<FluxTrace>& flux) {
+  std::map<std::string, std::vector<double>> of_run_W;
+  for (const FluxTrace& trace : flux) {
+    std::vector<double>& sum_W = of_run_W[trace.run];
+    sum_W.resize(trace.after_W.size(), 0.0);
+    std::ranges::transform(sum_W, trace.after_W, sum_W.begin(), std::plus<>());
+  }
+  double net_W = 0.0;
+  double size_W = 0.0;
+  for (const auto& [run, sum_W] : of_run_W) {
+    for (const double each_W : sum_W) {
+      net_W += each_W;
+      size_W += std::abs(each_W);
+    }
+  }
+  return size_W > 0.0 ? net_W / size_W : 0.0;
 }
 
 void settle_turning_rows(DiagnosisInput& input) {

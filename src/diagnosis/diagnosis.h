@@ -114,6 +114,10 @@ struct Diagnosis {
   attribution::Selection selection;
 };
 
+/// Returns the mean of the unknown heat that remains, summed over the nodes, divided by the mean of its magnitude: 1 if heat is
+/// missing throughout, -1 if the model has too much. 0 without traces.
+double net_share(const std::vector<FluxTrace>& flux);
+
 /// True if the error is larger than the other by more than 10 % and by more than the threshold `matters_K`.
 bool is_plainly_worse(double error_K, double than_K);
 

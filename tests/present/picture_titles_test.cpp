@@ -75,7 +75,21 @@ TEST(Titles, ADiagnosisStatesItsVerdict) {
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::unexplained;
   EXPECT_THAT(verdict_words(answer.diagnosis), EndsWith(", and further heat that no effect of the catalogue explains"));
   answer.diagnosis.effects.clear();
-  EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("heat is missing that no effect"));
+  const auto with_heat = [&](std::vector<double> winding_W, std::vector<double> stator_W) {
+    answer.diagnosis.flux.assign(2, {});
+    answer.diagnosis.flux[0].after_W = std::move(winding_W);
+    answer.diagnosis.flux[1].after_W = std::move(stator_W);
+    return verdict_words(answer.diagnosis);
+  };
+  EXPECT_THAT(with_heat({2.0, 3.0}, {-1.0, 0.0}), StartsWith("heat is missing that no effect"));
+  EXPECT_THAT(with_heat({-2.0, -3.0}, {1.0, 1.0}), StartsWith("the model has too much heat, a difference that no effect"));
+  EXPECT_THAT(with_heat({-2.0, 3.0}, {0.0, 0.0}), StartsWith("the runs have unmodelled heat of both signs that no effect"));
+  diagnosis::Unexplained& curve = answer.diagnosis.unexplained.emplace_back();
+  curve.mean_W = 2.0;
+  curve.curve = {0.0, 3.0};
+  EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("heat is missing"));
+  curve.curve = {0.0, -3.0};
+  EXPECT_THAT(verdict_words(answer.diagnosis), StartsWith("the model has too much heat"));
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::nothing_missing;
   EXPECT_EQ(verdict_words(answer.diagnosis), "no effect is missing");
 }

@@ -308,6 +308,23 @@ std::string name_with_place(const diagnosis::FoundEffect& effect, const std::vec
   return is_elsewhere || is_twice ? fmt::format("{} at the {}", effect.id, effect.node) : effect.id;
 }
 
+/// Names the unexplained heat with its sign, if most of it has one: that of its curves, or without a curve that of the unknown heat.
+std::string_view heat_with_sign(const diagnosis::Diagnosis& diagnosis) {
+  constexpr double kMostly_share = 0.5;
+  double curves_W = 0.0;
+  double net_W = 0.0;
+  for (const diagnosis::Unexplained& heat : diagnosis.unexplained) {
+    if (!heat.curve.empty()) {
+      curves_W += heat.mean_W;
+      net_W += is_leaving(heat) ? -heat.mean_W : heat.mean_W;
+    }
+  }
+  const double share = curves_W > 0.0 ? net_W / curves_W : diagnosis::net_share(diagnosis.flux);
+  return share > kMostly_share    ? "heat is missing"
+         : share < -kMostly_share ? "the model has too much heat, a difference"
+                                  : "the runs have unmodelled heat of both signs";
+}
+
 }  // namespace
 
 std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
@@ -327,7 +344,7 @@ std::string verdict_words(const diagnosis::Diagnosis& diagnosis) {
     case diagnosis::DiagnosisVerdict::effect_found:
       return lacks;
     case diagnosis::DiagnosisVerdict::unexplained:
-      return names.empty() ? "heat is missing that no effect of the catalogue explains"
+      return names.empty() ? fmt::format("{} that no effect of the catalogue explains", heat_with_sign(diagnosis))
                            : lacks + ", and further heat that no effect of the catalogue explains";
     case diagnosis::DiagnosisVerdict::not_identifiable:
       break;
