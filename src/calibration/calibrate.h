@@ -55,7 +55,8 @@ enum class OpenReason {
   small_loss_at_speed,  ///< against the copper loss
   not_excited,          ///< the measured temperatures hardly depend on it
   speed_not_logged,
-  stator_not_settled,  ///< the runs neither reach a steady state nor cool down far enough
+  stator_not_settled,          ///< the runs neither reach a steady state nor cool down far enough
+  stator_beside_unknown_heat,  ///< the runs are long enough, but contain unmodelled heat
   winding_not_stepped  ///< the winding's temperature hardly differs from the stator's, or never changes in steps
 };
 /// Cheapest experiment that determines something.
@@ -79,10 +80,10 @@ struct MovedParameter {
 /// Parameters that the data do not determine.
 struct OpenDirection {
   std::vector<MovedParameter> together;  ///< combination that is not determined; empty or two and more
-  std::vector<std::string> parameters;   ///< single parameters that are not determined for the same reason
+  std::vector<std::string> parameters;   ///< parameters that are not identifiable because of it, or for the same reason
   OpenReason reason = OpenReason::not_excited;
-  double longest_run_s = 0.0;  ///< duration of the longest run, set for `stator_not_settled`
-  double stator_s = 0.0;       ///< time constant of the stator, set for `stator_not_settled`
+  double longest_run_s = 0.0;  ///< duration of the longest run, set for parameters of the stator
+  double stator_s = 0.0;       ///< time constant of the stator, set for its parameters
   Remedy remedy = Remedy::long_run;
   double left_sd = 0.0;  ///< remaining standard deviation along the direction, in logarithms
 };

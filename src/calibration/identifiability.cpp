@@ -82,6 +82,7 @@ Remedy remedy_for(OpenReason reason) {
       return Remedy::current_steps;
     case OpenReason::not_excited:
     case OpenReason::stator_not_settled:
+    case OpenReason::stator_beside_unknown_heat:
       break;
   }
   return Remedy::long_run;
@@ -122,21 +123,29 @@ OpenDirection open_for(OpenReason reason) {
 
 double component(const Eigen::VectorXd& direction, std::optional<Eigen::Index> place) { return place ? direction[*place] : 0.0; }
 
+/// Returns the exponent of a common factor on all heat in a free parameter: 1 for heat, heat capacities and conductances, -1 for thermal
+/// resistances, 0 for shares and times.
+double scale_exponent(const estimation::Model& model, Eigen::Index place, const Roles& roles) {
+  if (place == roles.resistance || place == roles.drag) {
+    return 1.0;
+  }
+  const std::string_view unit =
+      model.network.parameters()[static_cast<std::size_t>(model.free[static_cast<std::size_t>(place)].place)].unit;
+  const bool is_of_heat = unit == "W/K" || unit == "J/K" || unit == "W";
+  return is_of_heat ? 1.0 : unit == "K/W" ? -1.0 : 0.0;
+}
+
 /// Returns |cos| of the angle between `direction` and the scale direction: one factor on all heat and heat capacities, its inverse on all
 /// thermal resistances. Along the scale direction no temperature changes.
-double likeness_to_scale(const Eigen::VectorXd& direction, const Roles& roles) {
-  Eigen::VectorXd scale = Eigen::VectorXd::Zero(direction.size());
-  for (const auto& [place, sign] :
-       {std::pair(roles.winding_capacity, 1.0), std::pair(roles.winding_stator, -1.0), std::pair(roles.stator_capacity, 1.0),
-        std::pair(roles.stator_ambient, -1.0), std::pair(roles.resistance, 1.0), std::pair(roles.drag, 1.0)}) {
-    if (place) {
-      scale[*place] = sign;
-    }
+double likeness_to_scale(const estimation::Model& model, const Eigen::VectorXd& direction, const Roles& roles) {
+  Eigen::VectorXd scale(direction.size());
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    scale[i] = scale_exponent(model, i, roles);
   }
   return std::abs(direction.dot(scale.normalized()));
 }
 
-/// Adds the parameters that change most along the direction. The one that changes most is raised.
+/// Adds the parameters that change most along the direction, if there are several. The one that changes most is raised.
 void add_movement(const estimation::Model& model, const Eigen::VectorXd& direction, OpenDirection& open) {
   const double largest = direction.cwiseAbs().maxCoeff();
   Eigen::Index first = 0;
@@ -148,7 +157,6 @@ void add_movement(const estimation::Model& model, const Eigen::VectorXd& directi
     }
   }
   if (open.together.size() == 1) {
-    open.parameters.push_back(std::move(open.together.front().name));
     open.together.clear();
   }
 }
@@ -156,7 +164,7 @@ void add_movement(const estimation::Model& model, const Eigen::VectorXd& directi
 OpenReason reason_of(const MotorModel& motor, const Eigen::VectorXd& direction, const Look& seen) {
   const Roles roles = roles_of(motor.model);
   constexpr double kAlike = 0.9;
-  if (seen.has_heat && likeness_to_scale(direction, roles) > kAlike) {
+  if (seen.has_heat && likeness_to_scale(motor.model, direction, roles) > kAlike) {
     return OpenReason::common_factor;
   }
   const double in_winding = std::hypot(component(direction, roles.winding_capacity), component(direction, roles.winding_stator));
@@ -211,30 +219,61 @@ OpenReason reason_of(const MotorModel& motor, const CalibratedValue& parameter, 
   return OpenReason::not_excited;
 }
 
-/// Adds a reason for every parameter that is neither identifiable nor explained by the open directions, the columns of `explained`.
-void name_the_rest(const MotorModel& motor, const estimation::Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
-                   const Eigen::MatrixXd& explained, std::vector<OpenDirection>& open) {
+/// A combination of parameters that the data leave undetermined, and its remaining standard deviation per free parameter.
+struct Combination {
+  OpenDirection open;
+  Eigen::VectorXd left_sd;
+};
+
+/// Adds a reason for a parameter that is not identifiable and that no combination explains.
+void name_alone(const MotorModel& motor, const estimation::Fit& fit, const Look& seen, const CalibratedValue& parameter,
+                std::vector<OpenDirection>& open) {
+  // 98 % of a change.
+  constexpr double kSettled_ratio = 4.0;
+  const Roles roles = roles_of(motor.model);
+  const double stator_s = std::exp(component(fit.theta, roles.stator_capacity) + component(fit.theta, roles.stator_ambient));
   const bool has_unlogged_speed = !motor.nuisances.empty();
+  OpenReason reason = has_unlogged_speed && is_of_stator(motor, parameter) ? OpenReason::speed_not_logged : reason_of(motor, parameter, seen);
+  if (reason == OpenReason::stator_not_settled && seen.longest_s > kSettled_ratio * stator_s) {
+    reason = OpenReason::stator_beside_unknown_heat;
+  }
+  auto same = std::ranges::find(open, reason, &OpenDirection::reason);
+  if (same == open.end()) {
+    same = open.insert(open.end(), open_for(reason));
+  }
+  same->longest_run_s = seen.longest_s;
+  same->stator_s = stator_s;
+  same->parameters.push_back(parameter.name);
+  same->left_sd = std::max(same->left_sd, std::sqrt(parameter.exponents.dot(fit.covariance * parameter.exponents)));
+}
+
+/// Names every parameter that is not identifiable, with the combination that contributes most to its variance, or with a reason of its own.
+/// A combination that explains none of them is left out: `parameters` decides what is identifiable.
+void name_parameters(const MotorModel& motor, const estimation::Fit& fit, const Look& seen, std::span<const CalibratedParameter> parameters,
+                     std::vector<Combination> combinations, std::vector<OpenDirection>& open) {
+  constexpr double kExplains_share = 0.25;
+  std::vector<const CalibratedValue*> alone;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const CalibratedValue& parameter = motor.parameters[i];
-    const double variance = parameter.exponents.dot(fit.covariance * parameter.exponents);
-    constexpr double kMostly = 0.5;
-    if (parameters[i].is_identifiable || (explained.transpose() * parameter.exponents).squaredNorm() > kMostly * variance) {
+    if (parameters[i].is_identifiable) {
       continue;
     }
-    const OpenReason reason =
-        has_unlogged_speed && is_of_stator(motor, parameter) ? OpenReason::speed_not_logged : reason_of(motor, parameter, seen);
-    auto same = std::ranges::find(open, reason, &OpenDirection::reason);
-    if (same == open.end()) {
-      same = open.insert(open.end(), open_for(reason));
+    const auto part = [&](const Combination& each) { return std::abs(each.left_sd.dot(parameter.exponents)); };
+    const auto most = std::ranges::max_element(combinations, {}, part);
+    const double variance = parameter.exponents.dot(fit.covariance * parameter.exponents);
+    if (most != combinations.end() && part(*most) * part(*most) > kExplains_share * variance) {
+      most->open.parameters.push_back(parameter.name);
+    } else {
+      alone.push_back(&parameter);
     }
-    if (reason == OpenReason::stator_not_settled) {
-      const Roles roles = roles_of(motor.model);
-      same->longest_run_s = seen.longest_s;
-      same->stator_s = std::exp(component(fit.theta, roles.stator_capacity) + component(fit.theta, roles.stator_ambient));
+  }
+  for (Combination& each : combinations) {
+    if (!each.open.parameters.empty()) {
+      open.push_back(std::move(each.open));
     }
-    same->parameters.push_back(parameter.name);
-    same->left_sd = std::max(same->left_sd, std::sqrt(variance));
+  }
+  for (const CalibratedValue* const parameter : alone) {
+    name_alone(motor, fit, seen, *parameter, open);
   }
 }
 
@@ -305,7 +344,7 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const estima
     // Rank this first, because the information in the other runs depends on it.
     open.back().left_sd = std::numeric_limits<double>::infinity();
   }
-  Eigen::MatrixXd explained(count, 0);
+  std::vector<Combination> combinations;
   for (Eigen::Index i = 0; i < solver.eigenvalues().size(); ++i) {
     const double information = std::max(0.0, solver.eigenvalues()[i]);
     // Remaining uncertainty along this direction. An earlier fit may have determined what these runs do not.
@@ -314,14 +353,13 @@ std::vector<OpenDirection> open_directions(const MotorModel& motor, const estima
     constexpr double kWellKnown = 0.03;
     const bool is_known = was_fitted && left.cwiseAbs().maxCoeff() < kWellKnown;
     if (1.0 / (1.0 + information) > kIdentifiableShare && !is_known) {
-      open.push_back(open_for(reason_of(motor, left.normalized(), seen)));
-      add_movement(motor.model, left.normalized(), open.back());
-      open.back().left_sd = left.norm();
-      explained.conservativeResize(Eigen::NoChange, explained.cols() + 1);
-      explained.rightCols(1) = left;
+      OpenDirection direction = open_for(reason_of(motor, left.normalized(), seen));
+      add_movement(motor.model, left.normalized(), direction);
+      direction.left_sd = left.norm();
+      combinations.push_back({std::move(direction), left});
     }
   }
-  name_the_rest(motor, fit, seen, parameters, explained, open);
+  name_parameters(motor, fit, seen, parameters, std::move(combinations), open);
   return open;
 }
 

@@ -15,8 +15,8 @@ bool is_heated(const MotorModel& motor, std::span<const estimation::MeasuredRun>
 /// Returns true if a common factor on all heat changes the parameter: values in K/W and J/K, not time constants.
 bool depends_on_heat(const MotorModel& motor, const CalibratedValue& parameter);
 
-/// Returns the combinations of parameters that the data determine less well than the prior, and parameters that are not identifiable for
-/// another reason. `parameters` must be in the order of motor.parameters.
+/// Returns why parameters are not identifiable, as `parameters` state: because of a combination that the data determine less well than the
+/// prior, or for another reason. `parameters` must be in the order of motor.parameters.
 std::vector<OpenDirection> open_directions(const MotorModel& motor, const estimation::Fit& fit,
                                            std::span<const estimation::MeasuredRun> runs, std::span<const CalibratedParameter> parameters);
 

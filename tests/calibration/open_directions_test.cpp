@@ -148,6 +148,38 @@ recording::Recording cool_down(std::uint64_t seed, const estimation::TwoNodeTrut
       truth, hot_C, duration_s, 0.0, [](double) { return 0.0; }, seed);
 }
 
+TEST(SourcesOfAWrittenValue, AreListedOnce) {
+  EXPECT_EQ(motor::joined_sources("", "calibration"), "calibration");
+  EXPECT_EQ(motor::joined_sources("calibration", ""), "calibration");
+  EXPECT_EQ(motor::joined_sources("diagnosis", "diagnosis, maxon"), "diagnosis, maxon");
+  EXPECT_EQ(motor::joined_sources("maxon, calibration", "calibration"), "maxon, calibration");
+}
+
+// One minute of heating leaves single parameters open, a spread of the resistance a combination.
+TEST(OpenDirections, NameEachParameterThatTheTableCallsNotIdentifiableAndNoOther) {
+  const Folder folder;
+  const Sheet sheet{.truth = {}, .resistance_spread = ", tolerance = \"10 %\"", .thermal_spread = ", tolerance = \"60 %\""};
+  for (const double length_s : {60.0, 1200.0}) {
+    const recording::Recording log = log_of(
+        {}, 0.0, length_s, 0.0, [](double) { return 4.0; }, 3);
+    const std::vector<recording::Recording> logs{read_log(write_log(log, folder.path() / "log.csv"))};
+    const Calibration result = calibrate(sheet.motor(folder), logs, {}, {.fit = {}, .written = WrittenFit::innovations});
+    std::vector<std::string> named;
+    for (const OpenDirection& each : result.open) {
+      named.insert(named.end(), each.parameters.begin(), each.parameters.end());
+    }
+    std::vector<std::string> open;
+    for (const CalibratedParameter& each : result.parameters) {
+      if (!each.is_identifiable) {
+        open.push_back(each.name);
+      }
+    }
+    std::erase(named, std::string(kLossAtUnloggedSpeed));
+    EXPECT_THAT(named, testing::UnorderedElementsAreArray(open)) << length_s;
+    EXPECT_FALSE(open.empty());
+  }
+}
+
 void add_speed(recording::Recording& log, double speed_rad_per_s) {
   log.channels.push_back({*recording::quantity_named("speed_rad_per_s"), std::vector<double>(log.rows(), speed_rad_per_s)});
 }

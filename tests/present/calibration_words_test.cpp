@@ -98,10 +98,12 @@ TEST(WordsOfCalibration, OpenDirections) {
         std::pair(small_loss_at_speed, "the loss at speed is small against the copper loss"), std::pair(not_excited, "hardly depend on it"),
         std::pair(speed_not_logged, "the runs do not contain the speed"),
         std::pair(stator_not_settled, "the longest lasts 2 min, the stator's time constant is about 20 min"),
+        std::pair(stator_beside_unknown_heat, "the uncertainty stays a factor of 1.7"),
         std::pair(winding_not_stepped, "never changes in steps")}) {
     open.reason = reason;
     open.longest_run_s = 120.0;
     open.stator_s = 1150.0;
+    open.left_sd = 0.27;
     EXPECT_THAT(reason_words(open), HasSubstr(words));
   }
   for (const auto& [remedy, words] :

@@ -83,7 +83,7 @@ std::string heat_words(const calibration::Calibration& result) {
   if (result.is_forecast_written) {
     const motor::ForecastBand& band = result.forecast->band;
     words = fmt::format(
-        "The written forecast model has no unmodelled heat; its error band allows for {} % of the heat at the winding and {} % at the "
+        "The written forecast model treats no heat as unknown; its error band allows for {} % of the heat at the winding and {} % at the "
         "stator, correlated over about {} s.",
         base::significant(100.0 * band.unknown_heat_share[0], 2), base::significant(100.0 * band.unknown_heat_share[1], 2),
         base::significant(band.time_scale_s, 1));

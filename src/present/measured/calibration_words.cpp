@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "base/confidence.h"
 #include "base/quantity.h"
+#include "estimation/interval.h"
 #include "estimation/log_rows.h"
 #include "present/measured/log_words.h"
 #include "present/measured/run_words.h"
@@ -31,7 +33,7 @@ std::string say(const calibration::RowsTurn& /*of*/) {
 
 std::string say(const calibration::UnmodelledHeat& of) {
   return fmt::format(
-      "the model lacks {}: the unmodelled heat {} {} % of the {} W that flow through the motor on average; `heatsoak "
+      "the network of the motor file lacks {}: unmodelled heat {} {} % of the {} W that flow through the motor on average; `heatsoak "
       "diagnose` searches for the effect",
       of.exceeds_share ? "a large effect" : "an effect", of.exceeds_share ? "exceeds" : "is", base::significant(100.0 * of.share, 2),
       base::significant(of.usual_heat_W, 2));
@@ -357,6 +359,9 @@ std::string reason_words(const calibration::OpenDirection& open) {
           "the runs neither reach a steady state nor cool down far enough: the longest lasts {} min, the stator's time constant is about "
           "{} min",
           base::significant(open.longest_run_s / 60.0, 2), base::significant(open.stator_s / 60.0, 1));
+    case calibration::OpenReason::stator_beside_unknown_heat:
+      return fmt::format("beside the unmodelled heat of these runs, the uncertainty stays a factor of {}",
+                         base::significant(std::exp(estimation::kInterval_sd * open.left_sd), 2));
     case calibration::OpenReason::winding_not_stepped:
       break;
   }
