@@ -11,6 +11,13 @@
 
 namespace heatsoak::estimation {
 
+namespace {
+
+/// True for a body of an effect if the winding has a sensor, so that no part of the motor is much warmer than the sensors.
+bool is_bounded_body(Eigen::Index node, const MeasuredRun& run) { return node >= motor::states::first_own && run.sensor_at("winding"); }
+
+}  // namespace
+
 RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -34,9 +41,8 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
     if (std::isnan(start.state_C[node])) {
       const double sensors_C = seen > 0 ? sum_C / seen : ambient_C;
       const double above_K = std::abs(sensors_C - ambient_C);
-      // A body of an effect is anywhere between ambient and sensors. Winding or stator may also be warmer: the motor may just have been
-      // used.
-      const bool is_body = node >= motor::states::first_own;
+      // The motor may just have been used. If the winding, its warmest part, has a sensor, a body of an effect is between it and ambient.
+      const bool is_body = is_bounded_body(node, run);
       start.state_C[node] = is_body ? 0.5 * (sensors_C + ambient_C) : sensors_C;
       start.prior_sd_K[node] = is_body ? kBody_K + above_K / std::sqrt(12.0) : kSensed_K + above_K;
     }
@@ -78,7 +84,8 @@ DecidedStart decided_start(const thermal::Network& network, const RunStart& star
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
   // A model that is wrong in the first minute is wrong in the same direction, so many samples determine the start no better than a few.
-  const double independent_share = std::min(1.0, static_cast<double>(kFew) / static_cast<double>(beginning.samples()));
+  const bool has_body = is_bounded_body(network.state_count() - 1, run);
+  const double independent_share = has_body ? std::min(1.0, static_cast<double>(kFew) / static_cast<double>(beginning.samples())) : 1.0;
   const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);
   Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
   Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
