@@ -204,7 +204,7 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   json["would_not_show"] = diagnosis.selection.unseen;
   json["not_judged"] = untested_json(diagnosis.selection.not_judged);
   json["unknown_heat_rms_W"] = {{"before", diagnosis.flux_rms_before_W}, {"after", diagnosis.flux_rms_after_W}};
-  json["unknown_heat_net_share"] = rounded(diagnosis::net_share(diagnosis.flux), 3);
+  json["unknown_heat_net_ratio"] = rounded(diagnosis::net_share(diagnosis.flux), 3);
   json["power_balance_W"] = Json::object();
   for (const diagnosis::BalanceRow& row : diagnosis.balance) {
     json["power_balance_W"][row.effect] = row.heat_W;
@@ -224,6 +224,7 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
                                              {"unknown_heat_winding_share", base::kNotNegative},
                                              {"unknown_heat_stator_share", base::kNotNegative},
                                              {"unknown_heat_rms_W", base::kNotNegative},
+                                             {"unknown_heat_net_ratio", base::Range::between(-1.0, 1.0)},
                                              {"half_width_K", base::kNotNegative},
                                              {"time_scale_s", base::kNotNegative}});
 }
