@@ -113,14 +113,15 @@ class ModelBuilder {
   }
 
  private:
+  // Bounds of the search, relative to the value of the file.
+  static constexpr double kSheet_ratio = 30.0;
   static constexpr double kGuess_ratio = 1000.0;
 
-  /// Frees a parameter within a factor of 30 of its value. Returns its index among the free ones.
-  int free(const std::string& parameter) {
+  /// Frees a parameter within a factor `far_ratio` of its value. Returns its index among the free ones.
+  int free(const std::string& parameter, double far_ratio = kSheet_ratio) {
     const int place = place_of(all_.model.network, parameter);
     const double value = all_.model.values[static_cast<std::size_t>(place)];
-    constexpr double kFar = 30.0;
-    all_.model.free.push_back({.place = place, .by_log = true, .scale = 1.0, .low = value / kFar, .high = value * kFar});
+    all_.model.free.push_back({.place = place, .by_log = true, .scale = 1.0, .low = value / far_ratio, .high = value * far_ratio});
     return static_cast<int>(all_.model.free.size()) - 1;
   }
 
@@ -190,11 +191,12 @@ class ModelBuilder {
           }
           continue;
         }
-        add("effects." + name, std::string(base::unit_of(effect.type->parameters, i, values)), effect.parameters[i], {{free(name), 1.0}});
+        add("effects." + name, std::string(base::unit_of(effect.type->parameters, i, values)), effect.parameters[i],
+            {{free(name, kGuess_ratio), 1.0}});
         // The values of an effect are often guesses, so its range and the prior decide, not the bounds of a data sheet's values.
         estimation::FreeParameter& bounded = all_.model.free.back();
-        bounded.low = std::max(effect.parameters[i].value / kGuess_ratio, spec.range.low);
-        bounded.high = std::min(effect.parameters[i].value * kGuess_ratio, spec.range.high);
+        bounded.low = std::max(bounded.low, spec.range.low);
+        bounded.high = std::min(bounded.high, spec.range.high);
       }
       if (!held.empty()) {
         all_.held.emplace_back(EffectHeld{effect.name, std::move(held)});

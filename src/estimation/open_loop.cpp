@@ -22,7 +22,7 @@ RunStart start_of(const thermal::Network& network, const MeasuredRun& run) {
   const Eigen::Index states = network.state_count();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSensed_K = 5.0;
-  constexpr double kBody_K = 2.0;
+  constexpr double kBody_K = 2.0;  // difference between parts of a motor at rest
   const double ambient_C = run.at.front().ambient_C;
   RunStart start{Eigen::VectorXd::Constant(states, nan), {}, Eigen::VectorXd::Constant(states, kSensed_K)};
   double sum_C = 0.0;

@@ -20,8 +20,8 @@ struct RunStart {
 };
 
 /// Estimates the start temperatures without a fit: the first sample of each sensor; for winding and stator without a sensor the mean of the
-/// sensors; for bodies of effects too, or the middle between it and ambient if the winding has a sensor. Without sensors everything is at
-/// ambient temperature.
+/// sensors, also for bodies of effects. If the winding has a sensor, these bodies are in the middle between that mean and ambient. Without
+/// sensors everything is at ambient temperature.
 RunStart start_of(const thermal::Network& network, const MeasuredRun& run);
 
 /// Simulates and linearises the model along a run from given start temperatures.
