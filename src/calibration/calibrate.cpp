@@ -165,8 +165,8 @@ class Calibrating {
     if (holdout_.empty()) {
       return;
     }
-    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, false, setup_.heat}).runs;
-    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, rows_turn_, setup_.heat});
+    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, setup_.heat}).runs;
+    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, setup_.heat});
     for (const PredictionNote& note : after.notes) {
       std::visit([this](const auto& each) { all_.findings.emplace_back(each); }, note);
     }
@@ -193,7 +193,6 @@ class Calibrating {
     }
     all_.fit = std::move(other);
     all_.runs = std::move(turning);
-    rows_turn_ = true;
     all_.findings.push_back(RowsTurn{});
   }
 
@@ -413,7 +412,6 @@ class Calibrating {
   std::span<const recording::Recording> holdout_;
   const CalibrationOptions& options_;
   ForecastSetup setup_;
-  bool rows_turn_ = false;
   std::vector<ErrorBeforeAfter> innovations_error_;  ///< errors of the innovations fit in the fitted runs
   bool is_learned_ = false;                          ///< the innovations fit determined or narrowed at least one parameter
   Calibration all_;
@@ -451,6 +449,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.heat_input = calibration.motor_model.heat;
+  fit.is_speed_linear = has_finding<RowsTurn>(calibration.findings);
   fit.training = calibration.training;
   fit.extensions = motor.fit ? motor.fit->extensions : std::vector<std::string>{};
   fit.extensions.insert(fit.extensions.end(), extensions.begin(), extensions.end());
@@ -492,7 +491,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
       }
     }
   }
-  fit.band = calibration.forecast->band;
+  fit.band = motor::as_written(calibration.forecast->band);
   motor::refresh_values(result);
   return result;
 }

@@ -30,8 +30,8 @@ struct RunsOfLogs {
   std::vector<DiagnosisFinding> findings;
 };
 
-/// Reads the runs of the recordings; the caller throws `failures`. A log without a speed is accepted, as if no log had one: its loss at speed
-/// is unknown heat.
+/// Reads the runs of the recordings; the caller throws `failures`. A log without a speed is accepted, as if no log had one: its loss at
+/// speed is unknown heat.
 RunsOfLogs runs_of(const std::vector<recording::Recording>& recordings, const estimation::MeasuredRunOptions& options,
                    base::CollectedFailures& failures) {
   RunsOfLogs all;
@@ -136,7 +136,8 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   progress.expect(std::move(phases));
   progress.begin(kReading);
   settle_turning_rows(input);
-  if (input.turns_within_rows) {
+  model.is_speed_linear = input.turns_within_rows;
+  if (model.is_speed_linear) {
     findings.emplace_back(calibration::RowsTurn{});
   }
   if (std::vector<std::string> rare = estimation::keep_common_columns(input.train, input.model.columns); !rare.empty()) {
@@ -154,17 +155,18 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);
   std::ranges::move(outside_declared_ranges(job.motor, model, answer.motor), std::back_inserter(findings));
-  const calibration::PredictionOptions predicting{choice.ambient_C, input.turns_within_rows, model.heat};
+  const calibration::PredictionOptions predicting{choice.ambient_C, model.heat};
   progress.begin(kBand);
   answer.motor.fit->band = left_out_band(job.motor, model, answer.diagnosis, fitted);
   if (answer.motor.fit->band) {
+    answer.motor.fit->band = motor::as_written(*answer.motor.fit->band);
     answer.band = size_of_band(answer.motor, fitted, predicting);
   }
   progress.begin(kScoring);
   answer.score = score_holdout({job.motor, refitted_motor(job.motor, model, answer.diagnosis), answer.motor}, held_out, predicting);
   answer.score.runs = std::move(holdout.runs);
   std::ranges::move(holdout.findings, std::back_inserter(findings));
-  if (input.turns_within_rows) {
+  if (model.is_speed_linear) {
     std::ranges::transform(answer.score.runs, answer.score.runs.begin(), estimation::turning_within_rows);
   }
   estimation::set_columns(answer.score.runs, columns);

@@ -150,6 +150,7 @@ void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const estimat
   together.motor = motor.fit ? motor.fit->motor : motor.id;
   together.runs = model.fitted;
   together.heat_input = model.heat;
+  together.is_speed_linear = model.is_speed_linear;
   together.training = model.training;
   for (std::size_t i = 0; i < of_file.size(); ++i) {
     const calibration::CalibratedValue& each = *of_file[i];

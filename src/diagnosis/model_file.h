@@ -20,6 +20,7 @@ struct ModelOfLogs {
   estimation::MeasuredRunOptions how;      ///< required signals and options for reading the runs, except for the ambient temperature
   std::vector<std::string> fitted;         ///< logs that the file's parameters were fitted to, as name_and_fingerprint()
   motor::TrainingRange training;           ///< range of the signals in those logs and in these
+  bool is_speed_linear = false;            ///< in rows in which the motor may reverse (turning_rows.h)
   std::vector<DiagnosisFinding> findings;  ///< assumptions for signals that no log has
 };
 

@@ -141,16 +141,37 @@ std::string training_text(const TrainingRange& range) {
   return text.empty() ? "" : "# conditions and ranges of the fitted runs: forecasts outside are extrapolations\n" + text;
 }
 
+constexpr std::string_view kLinear = "linear";
+constexpr int kBandDigits = 2;
+
+bool read_is_speed_linear(input::Reader& table) {
+  const std::optional<std::string> word = table.text("speed_within_rows", input::Need::optional);
+  if (word && *word != kLinear) {
+    table.problem("speed_within_rows",
+                  fmt::format("'{}' is unknown; expected \"{}\"; without this key the speed is constant within a row", *word, kLinear));
+  }
+  return word == kLinear;
+}
+
 std::string band_text(const ForecastBand& band) {
   return fmt::format(
       "# for forecasts of other runs: rms of slow unknown heat per rms heat of the run, and a factor on all heat\n"
       "forecast_unknown_heat_winding = \"{}\"\nforecast_unknown_heat_stator = \"{}\"\nforecast_time_scale = \"{} s\"\n"
       "forecast_heat_factor = \"{}\"\nforecast_width = \"{}\"\n",
-      base::significant(band.unknown_heat_share[0], 2), base::significant(band.unknown_heat_share[1], 2),
-      base::significant(band.time_scale_s, 2), base::significant(band.heat_factor_sd, 2), base::significant(band.width_ratio, 2));
+      base::significant(band.unknown_heat_share[0], kBandDigits), base::significant(band.unknown_heat_share[1], kBandDigits),
+      base::significant(band.time_scale_s, kBandDigits), base::significant(band.heat_factor_sd, kBandDigits),
+      base::significant(band.width_ratio, kBandDigits));
 }
 
 }  // namespace
+
+ForecastBand as_written(const ForecastBand& band) {
+  const auto written = [](double value) { return base::parse_number(base::significant(value, kBandDigits)).value_or(value); };
+  return {{written(band.unknown_heat_share[0]), written(band.unknown_heat_share[1])},
+          written(band.time_scale_s),
+          written(band.heat_factor_sd),
+          written(band.width_ratio)};
+}
 
 std::string_view name_of(HeatInput heat) { return kHeatInputNames[static_cast<std::size_t>(heat)]; }
 
@@ -196,6 +217,7 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
                      input::Need::optional);
   fit.extensions = table.texts("extensions", input::Need::optional);
   fit.heat_input = read_heat_input(table);
+  fit.is_speed_linear = read_is_speed_linear(table);
   fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
@@ -234,6 +256,9 @@ std::string to_toml(const MotorFit& fit) {
   text += fit.free_run_error_K ? fmt::format("free_run_error = \"{} K\"\n", base::significant(*fit.free_run_error_K, 2)) : "";
   text += fit.heat_input
               ? fmt::format("# the thermal values hold for heat from this input of a log\nheat_input = \"{}\"\n", name_of(*fit.heat_input))
+              : "";
+  text += fit.is_speed_linear
+              ? fmt::format("# in rows in which the motor may reverse, its speed changes linearly\nspeed_within_rows = \"{}\"\n", kLinear)
               : "";
   text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");

@@ -82,6 +82,8 @@ struct MotorFit {
   std::vector<std::string> extensions = {};
   /// Heat input of the fitted runs. The thermal parameters hold for it, so it is also that of forecasts. Absent in older files.
   std::optional<HeatInput> heat_input = {};
+  /// In rows in which the motor may reverse, the speed changes linearly instead of being constant. The values hold for this assumption.
+  bool is_speed_linear = false;
   TrainingRange training = {};
   std::optional<ForecastBand> band = {};  ///< estimated by the calibration from left-out runs; may be absent
 };
@@ -89,6 +91,9 @@ struct MotorFit {
 /// Reads the table; `parameters` are the keys of the file. Adds problems to the reader's diagnostics.
 MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters);
 std::string to_toml(const MotorFit& fit);
+
+/// Returns the band with the digits that a file states, so that a forecast from memory equals one from the file.
+ForecastBand as_written(const ForecastBand& band);
 
 /// Returns the factor on all heat of a run at the quantile `uniform` in (0, 1). It combines the heat factor of the band with the unknown
 /// heat at the winding, which is assumed constant over the run as the worst case of slow heat.

@@ -260,6 +260,28 @@ offset = { value = "1 K", origin = "measured", source = "nobody" }
                base::Failure);
 }
 
+constexpr const char* kFit = R"([fit]
+motor = "y"
+figures = ["thermal_time_constant_winding"]
+correlation = ["1"]
+speed_within_rows = "%s"
+)";
+
+TEST(MotorFit, states_how_the_speed_changes_within_rows) {
+  std::string text = kFit;
+  const std::size_t place = text.find("%s");
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", std::string(text).replace(place, 2, "linear"));
+  ASSERT_TRUE(motor.fit);
+  EXPECT_TRUE(motor.fit->is_speed_linear);
+  EXPECT_THAT(to_toml(motor), testing::HasSubstr("speed_within_rows = \"linear\""));
+  try {
+    motor_with("between_terminals", "per_dc_ampere", text.replace(place, 2, "cubic"));
+    FAIL() << "accepted";
+  } catch (const base::Failure& failure) {
+    EXPECT_THAT(failure.what(), testing::HasSubstr("'cubic' is unknown; expected \"linear\""));
+  }
+}
+
 TEST(DataQuality, is_that_of_the_worst_thermal_value) {
   Motor motor = motor_with("between_terminals", "per_dc_ampere");
   EXPECT_EQ(data_quality(motor), "datasheet");

@@ -102,7 +102,7 @@ void predict_one(const motor::Motor& motor, const recording::Recording& recordin
     each.recording = recording.name;
     all.missing.push_back(std::move(each));
   }
-  if (options.turns_within_rows) {
+  if (motor.fit && motor.fit->is_speed_linear) {
     std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
   }
   const FileModel file = model_of_file(std::move(setup), motor, runs);

@@ -49,7 +49,6 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
 
 struct PredictionOptions {
   std::optional<double> ambient_C = {};  ///< for logs without an ambient temperature
-  bool turns_within_rows = false;        ///< interpolates speeds whose sign changes from row to row (turning_rows.h)
   std::optional<HeatInput> heat = {};    ///< heat input of the model; empty: that of the motor file's fit
 };
 
