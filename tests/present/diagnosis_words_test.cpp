@@ -141,6 +141,15 @@ TEST(WordsOfDiagnosis, IntervalsFromZeroAreNoSizes) {
   EXPECT_THAT(words(), testing::Not(HasSubstr("hardly determine")));
 }
 
+TEST(WordsOfDiagnosis, OddsAreNumbersWithoutNaturalLogarithms) {
+  diagnosis::DiagnosisAnswer answer;
+  diagnosis::FoundEffect& effect = answer.diagnosis.effects.emplace_back();
+  effect.gain_nats = 3.0;
+  EXPECT_THAT(testing::PrintToString(diagnosis_words(answer)), HasSubstr("would be 20 times less probable"));
+  effect.gain_nats = 82.0;
+  EXPECT_THAT(testing::PrintToString(diagnosis_words(answer)), HasSubstr("would be 10^36 times less probable"));
+}
+
 TEST(WordsOfDiagnosis, ASizeWithoutUnitAtItsBoundHasNoBlankBeforeTheComma) {
   diagnosis::DiagnosisAnswer answer;
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::effect_found;
