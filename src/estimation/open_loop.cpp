@@ -79,26 +79,80 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 
 }  // namespace
 
+namespace {
+
+struct Moved {
+  Eigen::VectorXd by;
+  Eigen::MatrixXd covariance;
+};
+
+/// Linear least squares with a normal prior of mean `expected` and the given precision. Residuals of weight 0 do not count.
+Moved least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual, const Eigen::VectorXd& weights,
+                    const Eigen::VectorXd& expected, const Eigen::VectorXd& precision) {
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * columns;
+  Eigen::MatrixXd normal = columns.transpose() * weighted;
+  normal.diagonal() += precision;
+  Moved moved;
+  moved.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  moved.by = moved.covariance * (weighted.transpose() * residual + precision.cwiseProduct(expected));
+  return moved;
+}
+
+/// Returns per sensor how much the mean square of the residuals exceeds the noise. `known` is 0 for rows without a reading.
+Eigen::VectorXd unexplained_K2(const Eigen::VectorXd& residual_K, const Eigen::VectorXd& known, const Eigen::VectorXd& noise_K2) {
+  const auto by_sensor = [&](const Eigen::VectorXd& rows) {
+    return Eigen::VectorXd(rows.reshaped(noise_K2.size(), rows.size() / noise_K2.size()).rowwise().sum());
+  };
+  const Eigen::VectorXd sum_K2 = by_sensor(residual_K.cwiseAbs2().cwiseProduct(known));
+  return (sum_K2.cwiseQuotient(by_sensor(known).cwiseMax(1.0)) - noise_K2).cwiseMax(0.0);
+}
+
+/// Returns per row the change of the prediction since the first row in the column of its sensor.
+Eigen::MatrixXd changes_K(const LinearisedRun& path) {
+  Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(path.residual_K.size(), path.sensors());
+  for (Eigen::Index row = 0; row < changes.rows(); ++row) {
+    const Eigen::Index sensor = row % path.sensors();
+    changes(row, sensor) = path.sensor_C(row / path.sensors(), sensor) - path.sensor_C(0, sensor);
+  }
+  return changes;
+}
+
+}  // namespace
+
 DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {
   // No model predicts the first seconds better than this; with less noise, its error would distort unmeasured nodes.
   constexpr double kLeastNoise_K = 0.3;
   const MeasuredRun beginning = beginning_of(run, std::min(run.samples(), deciding_samples(network, run)));
-  // A model that is wrong in the first minute is wrong in the same direction, so many samples determine the start no better than a few.
-  const bool has_body = is_bounded_body(network.state_count() - 1, run);
-  const double independent_share = has_body ? std::min(1.0, static_cast<double>(kFew) / static_cast<double>(beginning.samples())) : 1.0;
   const LinearisedRun path = along({start.state_C.data(), static_cast<std::size_t>(start.state_C.size())}, beginning);
-  Eigen::MatrixXd normal = start.prior_sd_K.cwiseAbs2().cwiseInverse().asDiagonal();
-  Eigen::VectorXd right = normal * (start.prior_C - start.state_C);
-  for (Eigen::Index row = 0; row < path.residual_K.size(); ++row) {
-    if (!std::isnan(path.residual_K[row])) {
-      const double noise_K = std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(row % path.sensors())].noise_K);
-      const double weight = independent_share / (noise_K * noise_K);
-      normal += weight * path.by_start.row(row).transpose() * path.by_start.row(row);
-      right += weight * path.by_start.row(row).transpose() * path.residual_K[row];
-    }
+  const Eigen::VectorXd known = path.residual_K.array().isNaN().select(Eigen::VectorXd::Zero(path.residual_K.size()), 1.0);
+  const Eigen::VectorXd residual_K = path.residual_K.array().isNaN().select(0.0, path.residual_K);
+  Eigen::VectorXd noise_K2(path.sensors());
+  for (Eigen::Index sensor = 0; sensor < path.sensors(); ++sensor) {
+    noise_K2[sensor] = std::pow(std::max(kLeastNoise_K, run.sensors[static_cast<std::size_t>(sensor)].noise_K), 2);
   }
-  const Eigen::MatrixXd covariance_K2 = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-  return {start.state_C + covariance_K2 * right, covariance_K2};
+  const auto weights = [&](const Eigen::VectorXd& variance_K2) {
+    return Eigen::VectorXd(known.cwiseQuotient(variance_K2.replicate(beginning.samples(), 1)));
+  };
+  const Eigen::VectorXd expected_K = start.prior_C - start.state_C;
+  const Eigen::VectorXd precision = start.prior_sd_K.cwiseAbs2().cwiseInverse();
+  const Moved moved = least_squares(path.by_start, residual_K, weights(noise_K2), expected_K, precision);
+  if (!is_bounded_body(network.state_count() - 1, run)) {
+    return {start.state_C + moved.by, moved.covariance};
+  }
+  // A model that is wrong in the first minute is wrong in one direction, which must not change the start of a body that no sensor sees.
+  // What the readings show of this error makes many samples worth no more than a few; a factor on the change is what they may hide.
+  constexpr double kChange_sd = 0.1;  // losses are hardly known to a tenth
+  const double few_share = static_cast<double>(kFew) / static_cast<double>(beginning.samples());
+  const Eigen::VectorXd variance_K2 = noise_K2 + unexplained_K2(residual_K - path.by_start * moved.by, known, noise_K2) / few_share;
+  const Eigen::Index states = start.state_C.size();
+  Eigen::MatrixXd columns(residual_K.size(), states + path.sensors());
+  columns << path.by_start, changes_K(path);
+  Eigen::VectorXd expected(columns.cols());
+  expected << expected_K, Eigen::VectorXd::Zero(path.sensors());
+  Eigen::VectorXd both(columns.cols());
+  both << precision, Eigen::VectorXd::Constant(path.sensors(), 1.0 / (kChange_sd * kChange_sd));
+  const Moved allowing = least_squares(columns, residual_K, weights(variance_K2), expected, both);
+  return {start.state_C + allowing.by.head(states), allowing.covariance.topLeftCorner(states, states)};
 }
 
 Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {

@@ -31,7 +31,8 @@ struct DecidedStart {
   Eigen::MatrixXd covariance_K2;
 };
 /// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
-/// sensor. The prior is that of `start`.
+/// sensor. The prior is that of `start`. If the model contains a body of an effect, its errors count: the predicted change of a reading may
+/// be wrong by a factor of 1 ± 0.1, and a misfit beyond the noise is taken as one-signed.
 DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 /// Returns the temperatures of decided_start() in °C.
 Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
