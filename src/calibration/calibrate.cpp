@@ -178,6 +178,7 @@ class Calibrating {
   /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
   void settle_turning_rows() {
     if (std::ranges::none_of(all_.runs, estimation::may_turn_within_rows)) {
+      all_.is_speed_linear = setup_.motor.fit && setup_.motor.fit->is_speed_linear;
       return;
     }
     options_.progress.begin(calibration_phases::kFitting);
@@ -188,12 +189,12 @@ class Calibrating {
     estimation::FitOptions options = options_.fit;
     options.starts = 0;
     estimation::Fit other = estimation::fit(near, turning, options);
-    if (other.log_evidence <= all_.fit.log_evidence) {
-      return;
+    if (other.log_evidence > all_.fit.log_evidence) {
+      all_.fit = std::move(other);
+      all_.runs = std::move(turning);
+      all_.is_speed_linear = true;
+      all_.findings.push_back(RowsTurn{});
     }
-    all_.fit = std::move(other);
-    all_.runs = std::move(turning);
-    all_.findings.push_back(RowsTurn{});
   }
 
   void warn() {
@@ -449,7 +450,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
   fit.runs = motor.fit ? motor.fit->runs : std::vector<std::string>{};
   std::ranges::copy(calibration.fitted, std::back_inserter(fit.runs));
   fit.heat_input = calibration.motor_model.heat;
-  fit.is_speed_linear = has_finding<RowsTurn>(calibration.findings);
+  fit.is_speed_linear = calibration.is_speed_linear;
   fit.training = calibration.training;
   fit.extensions = motor.fit ? motor.fit->extensions : std::vector<std::string>{};
   fit.extensions.insert(fit.extensions.end(), extensions.begin(), extensions.end());
@@ -491,7 +492,7 @@ motor::Motor calibrated_motor(const motor::Motor& motor, const Calibration& cali
       }
     }
   }
-  fit.band = motor::as_written(calibration.forecast->band);
+  fit.band = motor::rounded_as_in_file(calibration.forecast->band);
   motor::refresh_values(result);
   return result;
 }

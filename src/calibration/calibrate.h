@@ -120,6 +120,7 @@ struct Calibration {
   std::vector<estimation::MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   motor::TrainingRange training;    ///< their conditions and input ranges
+  bool is_speed_linear = false;     ///< in rows in which the motor may reverse; unknown from these runs: as in the file
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;

@@ -136,8 +136,10 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   progress.expect(std::move(phases));
   progress.begin(kReading);
   settle_turning_rows(input);
-  model.is_speed_linear = input.turns_within_rows;
-  if (model.is_speed_linear) {
+  // Runs without such rows do not show how the speed changes within them.
+  const bool is_unknown = std::ranges::none_of(input.train, estimation::may_turn_within_rows);
+  model.is_speed_linear = is_unknown ? job.motor.fit && job.motor.fit->is_speed_linear : input.turns_within_rows;
+  if (input.turns_within_rows) {
     findings.emplace_back(calibration::RowsTurn{});
   }
   if (std::vector<std::string> rare = estimation::keep_common_columns(input.train, input.model.columns); !rare.empty()) {
@@ -159,7 +161,7 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   progress.begin(kBand);
   answer.motor.fit->band = left_out_band(job.motor, model, answer.diagnosis, fitted);
   if (answer.motor.fit->band) {
-    answer.motor.fit->band = motor::as_written(*answer.motor.fit->band);
+    answer.motor.fit->band = motor::rounded_as_in_file(*answer.motor.fit->band);
     answer.band = size_of_band(answer.motor, fitted, predicting);
   }
   progress.begin(kScoring);

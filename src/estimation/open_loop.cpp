@@ -81,30 +81,26 @@ MeasuredRun beginning_of(const MeasuredRun& run, Eigen::Index samples) {
 
 namespace {
 
-struct Moved {
-  Eigen::VectorXd by;
+struct Estimate {
+  Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
 };
 
-/// Linear least squares with a normal prior of mean `expected` and the given precision. Residuals of weight 0 do not count.
-Moved least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual, const Eigen::VectorXd& weights,
-                    const Eigen::VectorXd& expected, const Eigen::VectorXd& precision) {
+/// Linear least squares with a normal prior of mean `expected` and the given precision. Rows of weight 0 do not count.
+Estimate least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& residual, const Eigen::VectorXd& weights,
+                       const Eigen::VectorXd& expected, const Eigen::VectorXd& precision) {
   const Eigen::MatrixXd weighted = weights.asDiagonal() * columns;
   Eigen::MatrixXd normal = columns.transpose() * weighted;
   normal.diagonal() += precision;
-  Moved moved;
-  moved.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-  moved.by = moved.covariance * (weighted.transpose() * residual + precision.cwiseProduct(expected));
-  return moved;
+  Estimate estimate;
+  estimate.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  estimate.value = estimate.covariance * (weighted.transpose() * residual + precision.cwiseProduct(expected));
+  return estimate;
 }
 
-/// Returns per sensor how much the mean square of the residuals exceeds the noise. `known` is 0 for rows without a reading.
-Eigen::VectorXd unexplained_K2(const Eigen::VectorXd& residual_K, const Eigen::VectorXd& known, const Eigen::VectorXd& noise_K2) {
-  const auto by_sensor = [&](const Eigen::VectorXd& rows) {
-    return Eigen::VectorXd(rows.reshaped(noise_K2.size(), rows.size() / noise_K2.size()).rowwise().sum());
-  };
-  const Eigen::VectorXd sum_K2 = by_sensor(residual_K.cwiseAbs2().cwiseProduct(known));
-  return (sum_K2.cwiseQuotient(by_sensor(known).cwiseMax(1.0)) - noise_K2).cwiseMax(0.0);
+/// Returns the sum of a value per row (samples in order, of each all sensors) for each sensor.
+Eigen::VectorXd sum_by_sensor(const Eigen::VectorXd& rows, Eigen::Index sensors) {
+  return rows.reshaped(sensors, rows.size() / sensors).rowwise().sum();
 }
 
 /// Returns per row the change of the prediction since the first row in the column of its sensor.
@@ -135,24 +131,27 @@ DecidedStart decided_start(const thermal::Network& network, const RunStart& star
   };
   const Eigen::VectorXd expected_K = start.prior_C - start.state_C;
   const Eigen::VectorXd precision = start.prior_sd_K.cwiseAbs2().cwiseInverse();
-  const Moved moved = least_squares(path.by_start, residual_K, weights(noise_K2), expected_K, precision);
+  const Estimate independent = least_squares(path.by_start, residual_K, weights(noise_K2), expected_K, precision);
   if (!is_bounded_body(network.state_count() - 1, run)) {
-    return {start.state_C + moved.by, moved.covariance};
+    return {start.state_C + independent.value, independent.covariance};
   }
-  // A model that is wrong in the first minute is wrong in one direction, which must not change the start of a body that no sensor sees.
-  // What the readings show of this error makes many samples worth no more than a few; a factor on the change is what they may hide.
-  constexpr double kChange_sd = 0.1;  // losses are hardly known to a tenth
-  const double few_share = static_cast<double>(kFew) / static_cast<double>(beginning.samples());
-  const Eigen::VectorXd variance_K2 = noise_K2 + unexplained_K2(residual_K - path.by_start * moved.by, known, noise_K2) / few_share;
+  // The start of a body must not compensate for errors of the model. A misfit beyond the noise has one sign, so all readings of a sensor
+  // determine it no better than a few. A factor on the predicted change covers errors that the fit absorbs.
+  constexpr double kChange_sd = 0.1;  // losses are rarely known to better than 10 %
+  const Eigen::VectorXd left_K = residual_K - path.by_start * independent.value;
+  const Eigen::VectorXd readings = sum_by_sensor(known, path.sensors()).cwiseMax(1.0);
+  const Eigen::VectorXd mean_square_K2 = sum_by_sensor(left_K.cwiseAbs2().cwiseProduct(known), path.sensors()).cwiseQuotient(readings);
+  const Eigen::VectorXd per_few = (readings / static_cast<double>(kFew)).cwiseMax(1.0);
+  const Eigen::VectorXd variance_K2 = noise_K2 + (mean_square_K2 - noise_K2).cwiseMax(0.0).cwiseProduct(per_few);
   const Eigen::Index states = start.state_C.size();
   Eigen::MatrixXd columns(residual_K.size(), states + path.sensors());
   columns << path.by_start, changes_K(path);
   Eigen::VectorXd expected(columns.cols());
   expected << expected_K, Eigen::VectorXd::Zero(path.sensors());
-  Eigen::VectorXd both(columns.cols());
-  both << precision, Eigen::VectorXd::Constant(path.sensors(), 1.0 / (kChange_sd * kChange_sd));
-  const Moved allowing = least_squares(columns, residual_K, weights(variance_K2), expected, both);
-  return {start.state_C + allowing.by.head(states), allowing.covariance.topLeftCorner(states, states)};
+  Eigen::VectorXd all_precision(columns.cols());
+  all_precision << precision, Eigen::VectorXd::Constant(path.sensors(), 1.0 / (kChange_sd * kChange_sd));
+  const Estimate found = least_squares(columns, residual_K, weights(variance_K2), expected, all_precision);
+  return {start.state_C + found.value.head(states), found.covariance.topLeftCorner(states, states)};
 }
 
 Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along) {

@@ -165,7 +165,7 @@ std::string band_text(const ForecastBand& band) {
 
 }  // namespace
 
-ForecastBand as_written(const ForecastBand& band) {
+ForecastBand rounded_as_in_file(const ForecastBand& band) {
   const auto written = [](double value) { return base::parse_number(base::significant(value, kBandDigits)).value_or(value); };
   return {{written(band.unknown_heat_share[0]), written(band.unknown_heat_share[1])},
           written(band.time_scale_s),

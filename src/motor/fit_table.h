@@ -93,7 +93,7 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
 std::string to_toml(const MotorFit& fit);
 
 /// Returns the band with the digits that a file states, so that a forecast from memory equals one from the file.
-ForecastBand as_written(const ForecastBand& band);
+ForecastBand rounded_as_in_file(const ForecastBand& band);
 
 /// Returns the factor on all heat of a run at the quantile `uniform` in (0, 1). It combines the heat factor of the band with the unknown
 /// heat at the winding, which is assumed constant over the run as the worst case of slow heat.

@@ -196,6 +196,8 @@ TEST(Diagnose, ScoresEachHoldoutRunWithThreeFilesAlike) {
     for (std::size_t r = 0; r < 2; ++r) {
       const double after_K = runs["after"][r]["error"][signal]["rmse_K"].get<double>();
       EXPECT_NEAR(after_K, predicted["runs"][r]["error"][signal]["rmse_K"].get<double>(), kRounding_K) << signal << r;
+      EXPECT_NEAR(runs["after"][r]["coverage_90"][signal].get<double>(), predicted["runs"][r]["coverage_90"][signal].get<double>(), 1e-3)
+          << signal << r;
       worst_K = std::max(worst_K, after_K);
     }
     EXPECT_EQ(answer["after"]["holdout"][signal]["rmse_K"].get<double>(), worst_K) << signal;
@@ -248,11 +250,13 @@ TEST(Diagnose, TakesALogWithoutSpeedBesideOthers) {
   const auto without_speed = [&](const char* name) {
     return changed_log(folder, name, [](int, std::vector<std::string>& cells) { cells.resize(kCurrent + 1); });
   };
-  const ProgramRun fitted = run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), log("bench.csv"), "--explain"}, in(folder));
+  const ProgramRun fitted =
+      run({"diagnose", "--model", kMotor, "--train", without_speed("match_1.csv"), log("bench.csv"), "--explain"}, in(folder));
   EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
   EXPECT_THAT(fitted.out, HasSubstr("not every log has a speed"));
   const ProgramRun held_out =
-      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", without_speed("match_3.csv")}, in(folder));
+      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", without_speed("match_3.csv")},
+          in(folder));
   EXPECT_EQ(held_out.exit_code, 0) << held_out.err;
 }
 

@@ -63,6 +63,24 @@ TEST(Predict, IsWhereHoldoutErrorsComeFrom) {
   EXPECT_THAT(own.out, HasSubstr("the error of match_1 is not a forecast error"));
 }
 
+/// A log in which the motor never reverses does not show how its speed changes within rows in which it does.
+TEST(Predict, RefitKeepsHowTheSpeedChangesWithinRows) {
+  const TemporaryFolder folder;
+  constexpr const char* kKey = "speed_within_rows = \"linear\"";
+  ASSERT_THAT(example_calibration().motor_file, HasSubstr(kKey));
+  write(folder.path() / "model.toml", example_calibration().motor_file);
+  std::istringstream rows(content_of(log("match_3.csv")));
+  std::string one_way;
+  for (std::string row; std::getline(rows, row);) {
+    const std::size_t speed = row.rfind(',') + 1;
+    one_way += row.substr(0, speed) + row.substr(row[speed] == '-' ? speed + 1 : speed) + "\n";
+  }
+  write(folder.path() / "one_way.csv", one_way);
+  const ProgramRun again = run({"calibrate", "--innovations", "--motor", "model.toml", "one_way.csv", "--out", "again.toml"}, in(folder));
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(content_of(folder.path() / "again.toml"), HasSubstr(kKey));
+}
+
 std::string mapping_with(const std::string& fan) {
   return "[conditions]\nfan = \"" + fan +
          "\"\n[quantities]\ntime_s = { column = \"time_s\" }\nwinding_C = { column = \"winding_C\" }\nstator_C = { column = "

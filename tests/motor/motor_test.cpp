@@ -265,6 +265,11 @@ motor = "y"
 figures = ["thermal_time_constant_winding"]
 correlation = ["1"]
 speed_within_rows = "%s"
+forecast_unknown_heat_winding = "0.1234"
+forecast_unknown_heat_stator = "0.0567"
+forecast_time_scale = "1234 s"
+forecast_heat_factor = "0.0345"
+forecast_width = "1.26"
 )";
 
 TEST(MotorFit, states_how_the_speed_changes_within_rows) {
@@ -280,6 +285,20 @@ TEST(MotorFit, states_how_the_speed_changes_within_rows) {
   } catch (const base::Failure& failure) {
     EXPECT_THAT(failure.what(), testing::HasSubstr("'cubic' is unknown; expected \"linear\""));
   }
+}
+
+TEST(MotorFit, band_is_rounded_as_in_its_file) {
+  const Motor motor =
+      motor_with("between_terminals", "per_dc_ampere", std::string(kFit).replace(std::string(kFit).find("%s"), 2, "linear"));
+  const ForecastBand rounded = rounded_as_in_file(motor.fit->band.value());
+  EXPECT_DOUBLE_EQ(rounded.unknown_heat_share[0], 0.12);
+  EXPECT_DOUBLE_EQ(rounded.unknown_heat_share[1], 0.057);
+  EXPECT_DOUBLE_EQ(rounded.time_scale_s, 1200.0);
+  EXPECT_DOUBLE_EQ(rounded.heat_factor_sd, 0.035);
+  EXPECT_DOUBLE_EQ(rounded.width_ratio, 1.3);
+  Motor written = motor;
+  written.fit->band = rounded;
+  EXPECT_EQ(to_toml(written), to_toml(motor));
 }
 
 TEST(DataQuality, is_that_of_the_worst_thermal_value) {

@@ -143,11 +143,19 @@ TEST(WordsOfDiagnosis, IntervalsFromZeroAreNoSizes) {
 
 TEST(WordsOfDiagnosis, OddsAreNumbersWithoutNaturalLogarithms) {
   diagnosis::DiagnosisAnswer answer;
-  diagnosis::FoundEffect& effect = answer.diagnosis.effects.emplace_back();
-  effect.gain_nats = 3.0;
-  EXPECT_THAT(testing::PrintToString(diagnosis_words(answer)), HasSubstr("would be 20 times less probable"));
-  effect.gain_nats = 82.0;
-  EXPECT_THAT(testing::PrintToString(diagnosis_words(answer)), HasSubstr("would be 10^36 times less probable"));
+  answer.diagnosis.effects.emplace_back();
+  answer.diagnosis.changed.emplace_back();
+  const std::vector<std::pair<double, std::string>> words{{1.0, "hardly less probable"},
+                                                          {3.0, "20 times less probable"},
+                                                          {82.0, "10^36 times less probable"},
+                                                          {2788.0, "more than 10^100 times less probable"}};
+  for (const auto& [nats, expected] : words) {
+    answer.diagnosis.effects.front().gain_nats = nats;
+    answer.diagnosis.changed.front().gain_nats = nats;
+    const std::string text = testing::PrintToString(diagnosis_words(answer));
+    EXPECT_THAT(text, HasSubstr("Without it the model would be " + expected + "."));
+    EXPECT_THAT(text, HasSubstr("with the file's value the runs would be " + expected + "."));
+  }
 }
 
 TEST(WordsOfDiagnosis, ASizeWithoutUnitAtItsBoundHasNoBlankBeforeTheComma) {

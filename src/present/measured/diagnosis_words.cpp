@@ -71,11 +71,19 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   return text.empty() ? "" : ", " + text;
 }
 
-/// Returns a ratio of probabilities, given as its natural logarithm: "20" or "10^36".
-std::string odds_in_words(double nats) {
+/// Returns "20 times less probable" or "10^36 times less probable" for a ratio of probabilities, given as its natural logarithm.
+std::string less_probable(double nats) {
+  constexpr double kFewest = 10.0;
   constexpr double kLargestCounted = 1e4;
-  return nats < std::log(kLargestCounted) ? fmt::format("{}", base::significant(std::exp(nats), 1))
-                                          : fmt::format("10^{:.0f}", nats / std::numbers::ln10);
+  constexpr double kLargestPower = 100.0;
+  if (!(nats >= std::log(kFewest))) {
+    return "hardly less probable";
+  }
+  if (nats < std::log(kLargestCounted)) {
+    return fmt::format("{} times less probable", base::significant(std::exp(nats), 1));
+  }
+  const double power = nats / std::numbers::ln10;
+  return fmt::format("{}10^{:.0f} times less probable", power > kLargestPower ? "more than " : "", std::min(power, kLargestPower));
 }
 
 std::string effect_in_words(const diagnosis::FoundEffect& effect) {
@@ -98,7 +106,7 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
   if (effect.mean_W > 0.0) {
     text += fmt::format("; {} W on average, up to {} W", base::significant(effect.mean_W, 2), base::significant(effect.peak_W, 2));
   }
-  text += fmt::format(". Without it the model would be {} times less probable.", odds_in_words(effect.gain_nats));
+  text += fmt::format(". Without it the model would be {}.", less_probable(effect.gain_nats));
   if (!effect.confusable_with.empty()) {
     text += fmt::format(" In these runs it cannot be distinguished from {}.", fmt::join(effect.confusable_with, " or "));
   }
@@ -143,12 +151,11 @@ std::string changed_in_words(const diagnosis::ChangedParameter& parameter) {
   // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
   const bool is_beyond_scale = parameter.before < parameter.low || parameter.before > parameter.high;
   return fmt::format(
-      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be {} times less "
-      "probable.",
+      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be {}.",
       parameter.name, parameter.before, parameter.unit, parameter.value, parameter.unit,
       is_beyond_scale ? fmt::format(" ({}: {:.3g} to {:.3g})", base::level_text(base::kInterval_share), parameter.low, parameter.high)
                       : std::string(),
-      odds_in_words(parameter.gain_nats));
+      less_probable(parameter.gain_nats));
 }
 
 /// A positive conductance means heat out of the node, a positive source means heat into it.
