@@ -57,7 +57,7 @@ enum class OpenReason {
   speed_not_logged,
   stator_not_settled,          ///< the runs neither reach a steady state nor cool down far enough
   stator_beside_unknown_heat,  ///< the runs are long enough, but contain unmodelled heat
-  winding_not_stepped  ///< the winding's temperature hardly differs from the stator's, or never changes in steps
+  winding_not_stepped          ///< the winding's temperature hardly differs from the stator's, or never changes in steps
 };
 /// Cheapest experiment that determines something.
 enum class Remedy {
@@ -120,7 +120,7 @@ struct Calibration {
   std::vector<estimation::MeasuredRun> runs;
   std::vector<std::string> fitted;  ///< name_and_fingerprint() of each recording
   motor::TrainingRange training;    ///< their conditions and input ranges
-  bool is_speed_linear = false;     ///< in rows in which the motor may reverse; unknown from these runs: as in the file
+  bool is_speed_linear = false;     ///< in rows in which the motor may reverse; as in the file if no run has such rows
   std::vector<CalibratedParameter> parameters;
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;

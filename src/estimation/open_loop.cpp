@@ -98,12 +98,12 @@ Estimate least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& re
   return estimate;
 }
 
-/// Returns the sum of a value per row (samples in order, of each all sensors) for each sensor.
+/// Returns the sum over the samples for each sensor. `rows` has the values of all sensors at the first sample, then at the second.
 Eigen::VectorXd sum_by_sensor(const Eigen::VectorXd& rows, Eigen::Index sensors) {
   return rows.reshaped(sensors, rows.size() / sensors).rowwise().sum();
 }
 
-/// Returns per row the change of the prediction since the first row in the column of its sensor.
+/// Returns the change of each predicted reading since the first sample: in the column of its sensor, with 0 in the other columns.
 Eigen::MatrixXd changes_K(const LinearisedRun& path) {
   Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(path.residual_K.size(), path.sensors());
   for (Eigen::Index row = 0; row < changes.rows(); ++row) {
@@ -135,8 +135,8 @@ DecidedStart decided_start(const thermal::Network& network, const RunStart& star
   if (!is_bounded_body(network.state_count() - 1, run)) {
     return {start.state_C + independent.value, independent.covariance};
   }
-  // The start of a body must not compensate for errors of the model. A misfit beyond the noise has one sign, so all readings of a sensor
-  // determine it no better than a few. A factor on the predicted change covers errors that the fit absorbs.
+  // The start of a body must not compensate for errors of the model. A misfit beyond the noise is correlated in time, so all readings of a
+  // sensor together have the weight of five. The factor on the predicted change represents errors that leave no misfit.
   constexpr double kChange_sd = 0.1;  // losses are rarely known to better than 10 %
   const Eigen::VectorXd left_K = residual_K - path.by_start * independent.value;
   const Eigen::VectorXd readings = sum_by_sensor(known, path.sensors()).cwiseMax(1.0);

@@ -31,9 +31,9 @@ struct DecidedStart {
   Eigen::MatrixXd covariance_K2;
 };
 /// Estimates the start temperatures from the first five samples, or from the first minute (at most a tenth of the run) if a node has no
-/// sensor. The prior is that of `start`. Readings are independent with the noise of their sensor, at least 0.3 K. If the model has a body
-/// of an effect and the winding a sensor, a larger misfit counts as correlated, and the predicted change of a reading has a factor of 1 ±
-/// 0.1.
+/// sensor. The prior is that of `start`. Readings have independent errors: the noise of their sensor, at least 0.3 K. If the winding has a
+/// sensor and the model a body of an effect, two errors of the model are added: the misfit beyond the noise, which is correlated in time,
+/// and a factor of 1 ± 0.1 on the predicted change of each reading.
 DecidedStart decided_start(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);
 /// Returns the temperatures of decided_start() in °C.
 Eigen::VectorXd decided_start_C(const thermal::Network& network, const RunStart& start, const MeasuredRun& run, const RunFrom& along);

@@ -34,8 +34,8 @@ struct NamedLogs {
 };
 
 /// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"). Several parts
-/// of one log get the part as a suffix ("run@0-60%"). Hold-out logs do not change the names of fitted logs. Logs that cannot be read are in
-/// `unread`; the caller reports them with the problems of the other logs.
+/// of one log have the part as a suffix ("run@0-60%"). Hold-out logs do not change the names of fitted logs. Logs that cannot be read are
+/// in `unread`; the caller reports them with the problems of the other logs.
 NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 
 }  // namespace heatsoak::recording
