@@ -71,12 +71,14 @@ std::string condition_in_words(const std::map<std::string, std::string>& conditi
   return text.empty() ? "" : ", " + text;
 }
 
+/// True if probabilities with this logarithmic ratio differ by at least ten.
+bool is_clearly_less_probable(double nats) { return nats >= std::numbers::ln10; }
+
 /// Returns "20 times less probable" or "10^36 times less probable" for a ratio of probabilities, given as its natural logarithm.
 std::string less_probable(double nats) {
-  constexpr double kFewest = 10.0;
   constexpr double kLargestCounted = 1e4;
   constexpr double kLargestPower = 100.0;
-  if (!(nats >= std::log(kFewest))) {
+  if (!is_clearly_less_probable(nats)) {
     return "hardly less probable";
   }
   if (nats < std::log(kLargestCounted)) {
@@ -137,7 +139,8 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty()) {
     return "The runs contradict the file's parameters. Either these have changed (another mounting, another specimen of the motor), "
            "or a missing effect acts like such a change; these runs do not determine which. No effect is named, and the parameters are "
-           "fitted to these runs.";
+           "fitted to these runs. If the file's values are guesses, state the range that contains each in the file, and repeat the "
+           "diagnosis.";
   }
   return !diagnosis.selection.is_undecided()
              ? fmt::format("At typical size, only {:.0f} % of the effects of the catalogue would be visible in these runs.",
@@ -150,12 +153,14 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
 std::string changed_in_words(const diagnosis::ChangedParameter& parameter) {
   // The interval includes a common factor on all heat. If it contains the file's value it would be misleading, so it is not printed.
   const bool is_beyond_scale = parameter.before < parameter.low || parameter.before > parameter.high;
-  return fmt::format(
-      "Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}; with the file's value the runs would be {}.",
-      parameter.name, parameter.before, parameter.unit, parameter.value, parameter.unit,
-      is_beyond_scale ? fmt::format(" ({}: {:.3g} to {:.3g})", base::level_text(base::kInterval_share), parameter.low, parameter.high)
-                      : std::string(),
-      less_probable(parameter.gain_nats));
+  return fmt::format("Does not hold here: {}, {:.3g} {} in the file, {:.3g} {} in these runs{}{}.", parameter.name, parameter.before,
+                     parameter.unit, parameter.value, parameter.unit,
+                     is_beyond_scale
+                         ? fmt::format(" ({}: {:.3g} to {:.3g})", base::level_text(base::kInterval_share), parameter.low, parameter.high)
+                         : std::string(),
+                     is_clearly_less_probable(parameter.gain_nats)
+                         ? fmt::format("; with the file's value the runs would be {}", less_probable(parameter.gain_nats))
+                         : std::string());
 }
 
 /// A positive conductance means heat out of the node, a positive source means heat into it.
