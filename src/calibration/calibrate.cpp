@@ -14,6 +14,7 @@
 #include "base/collected_failures.h"
 #include "base/copper.h"
 #include "base/diagnostic.h"
+#include "base/parallel.h"
 #include "calibration/effect_signals.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
@@ -97,7 +98,7 @@ class Calibrating {
     options_.progress.expect(calibration_work(all_.runs, options_.fit.threads));
     options_.progress.begin(calibration_phases::kFitting);
     all_.fit = estimation::fit(all_.motor_model.model, all_.runs, options_.fit);
-    settle_turning_rows();
+    settle_speed(motor.fit && motor.fit->is_speed_linear);
     options_.progress.begin(calibration_phases::kIntervals);
     warn();
     widen_by_rows();
@@ -120,6 +121,22 @@ class Calibrating {
   }
 
  private:
+  /// Decides how the speed varies within rows in which the motor may reverse, and refits if necessary. `of_file`: as the file states.
+  void settle_speed(bool of_file) {
+    runs_as_in_file_ = of_file ? estimation::turning_within_rows(all_.runs) : all_.runs;
+    estimation::Model near = all_.motor_model.model;
+    near.values = near.values_at(all_.fit.theta);
+    std::optional<bool> is_linear;
+    base::in_parallel(1, options_.fit.threads, [&](std::size_t) { is_linear = estimation::settle_turning_rows(near, all_.runs); });
+    all_.is_speed_linear = is_linear.value_or(of_file);
+    if (is_linear.value_or(false)) {
+      estimation::FitOptions from_near = options_.fit;
+      from_near.starts = 0;
+      all_.fit = estimation::fit(near, all_.runs, from_near);
+      all_.findings.push_back(RowsTurn{});
+    }
+  }
+
   /// Runs the forecast fit to whole runs, and writes its parameters if they predict better.
   void forecast() {
     const ForecastModel base = setup_.model();
@@ -127,9 +144,10 @@ class Calibrating {
         forecast_of(setup_, all_.runs, std::vector{base.within_bounds(all_.fit.theta)}, options_.fit.threads, options_.progress);
     score_innovations(setup_.model(), options_.fit, all_, options_.progress.begin(calibration_phases::kLeavingOut));
     options_.progress.begin(calibration_phases::kPredicting);
-    const std::vector<PredictedRun> by_innovations = fitted_runs(base, base.within_bounds(all_.fit.theta));
+    const std::vector<PredictedRun> by_innovations = fitted_runs(base, base.within_bounds(all_.fit.theta), all_.runs);
     innovations_error_ = errors_over_runs(by_innovations, by_innovations);
-    const bool is_better_fit = rms_error_K(fitted_runs(all_.forecast->model(), all_.forecast->fit.theta)) < rms_error_K(by_innovations);
+    const bool is_better_fit =
+        rms_error_K(fitted_runs(all_.forecast->model(), all_.forecast->fit.theta, all_.runs)) < rms_error_K(by_innovations);
     if (writes_forecast(options_.written, *all_.forecast, is_better_fit)) {
       write_forecast(all_);
       all_.effects = all_.forecast->setup.motor.effects;
@@ -142,10 +160,11 @@ class Calibrating {
     std::ranges::move(forecast_findings(all_), std::back_inserter(all_.findings));
   }
 
-  /// Predicts the fitted runs. Their bands are not valid.
-  [[nodiscard]] std::vector<PredictedRun> fitted_runs(const ForecastModel& model, const Eigen::VectorXd& theta) const {
+  /// Predicts fitted runs. Their bands are not valid.
+  [[nodiscard]] std::vector<PredictedRun> fitted_runs(const ForecastModel& model, const Eigen::VectorXd& theta,
+                                                      const std::vector<estimation::MeasuredRun>& runs) const {
     std::vector<PredictedRun> all;
-    for (const estimation::MeasuredRun& run : all_.runs) {
+    for (const estimation::MeasuredRun& run : runs) {
       all.push_back(predict(model, theta, Eigen::MatrixXd::Zero(model.count(), model.count()), all_.forecast->band, run));
     }
     return all;
@@ -154,9 +173,9 @@ class Calibrating {
   /// Errors of the original and of the written file over the fitted runs.
   std::vector<ErrorBeforeAfter> errors() {
     const ForecastModel base = setup_.model();
-    all_.fitted_before = fitted_runs(base, base.start());
-    all_.fitted_after =
-        all_.is_forecast_written ? fitted_runs(all_.forecast->model(), all_.forecast->fit.theta) : fitted_runs(base, all_.fit.theta);
+    all_.fitted_before = fitted_runs(base, base.start(), runs_as_in_file_);
+    all_.fitted_after = all_.is_forecast_written ? fitted_runs(all_.forecast->model(), all_.forecast->fit.theta, all_.runs)
+                                                 : fitted_runs(base, all_.fit.theta, all_.runs);
     return errors_over_runs(all_.fitted_before, all_.fitted_after);
   }
 
@@ -173,28 +192,6 @@ class Calibrating {
     all_.holdout_after = std::move(after.runs);
     all_.holdout_error = worst_errors(all_.holdout_before, all_.holdout_after);
     report_grown_errors(true, all_.holdout_error);
-  }
-
-  /// If the motor may have reversed within rows, refits with interpolated speeds and keeps that fit if its evidence is larger.
-  void settle_turning_rows() {
-    if (std::ranges::none_of(all_.runs, estimation::may_turn_within_rows)) {
-      all_.is_speed_linear = setup_.motor.fit && setup_.motor.fit->is_speed_linear;
-      return;
-    }
-    options_.progress.begin(calibration_phases::kFitting);
-    std::vector<estimation::MeasuredRun> turning;
-    std::ranges::transform(all_.runs, std::back_inserter(turning), estimation::turning_within_rows);
-    estimation::Model near = all_.motor_model.model;
-    near.values = near.values_at(all_.fit.theta);
-    estimation::FitOptions options = options_.fit;
-    options.starts = 0;
-    estimation::Fit other = estimation::fit(near, turning, options);
-    if (other.log_evidence > all_.fit.log_evidence) {
-      all_.fit = std::move(other);
-      all_.runs = std::move(turning);
-      all_.is_speed_linear = true;
-      all_.findings.push_back(RowsTurn{});
-    }
   }
 
   void warn() {
@@ -413,8 +410,9 @@ class Calibrating {
   std::span<const recording::Recording> holdout_;
   const CalibrationOptions& options_;
   ForecastSetup setup_;
-  std::vector<ErrorBeforeAfter> innovations_error_;  ///< errors of the innovations fit in the fitted runs
-  bool is_learned_ = false;                          ///< the innovations fit determined or narrowed at least one parameter
+  std::vector<ErrorBeforeAfter> innovations_error_;       ///< errors of the innovations fit in the fitted runs
+  std::vector<estimation::MeasuredRun> runs_as_in_file_;  ///< speed within rows as the motor file states
+  bool is_learned_ = false;                               ///< the innovations fit determined or narrowed at least one parameter
   Calibration all_;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -23,7 +22,6 @@
 #include "estimation/log_columns.h"
 #include "estimation/smoothed_path.h"
 #include "estimation/thresholds.h"
-#include "estimation/turning_rows.h"
 
 namespace heatsoak::diagnosis {
 namespace {
@@ -285,22 +283,6 @@ double net_share(const std::vector<FluxTrace>& flux) {
     }
   }
   return size_W > 0.0 ? net_W / size_W : 0.0;
-}
-
-void settle_turning_rows(DiagnosisInput& input) {
-  if (std::ranges::none_of(input.train, estimation::may_turn_within_rows)) {
-    return;
-  }
-  std::vector<estimation::MeasuredRun> turning;
-  std::ranges::transform(input.train, std::back_inserter(turning), estimation::turning_within_rows);
-  std::array<double, 2> nats{};
-  base::in_parallel(nats.size(), 0,
-                    [&](std::size_t i) { nats[i] = estimation::evidence_nats(input.model, i == 0 ? input.train : turning); });
-  if (nats[1] <= nats[0]) {
-    return;
-  }
-  input.train = std::move(turning);
-  input.turns_within_rows = true;
 }
 
 Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules) {

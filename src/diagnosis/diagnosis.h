@@ -23,7 +23,6 @@ struct DiagnosisInput {
   estimation::Model model;  ///< calibrated model
   std::vector<estimation::MeasuredRun> train;
   attribution::UsualErrors usual = {};
-  bool turns_within_rows = false;  ///< set by settle_turning_rows(): the motor reverses within rows of the log
   base::JobProgress progress = {};
 };
 
@@ -120,10 +119,6 @@ double net_share(const std::vector<FluxTrace>& flux);
 
 /// True if the error is larger than the other by more than 10 % and by more than the threshold `matters_K`.
 bool is_plainly_worse(double error_K, double than_K);
-
-/// Decides by evidence whether the motor reverses within rows of the log. If so, replaces the training runs by turning_within_rows() and
-/// sets the flag.
-void settle_turning_rows(DiagnosisInput& input);
 
 /// Runs the whole diagnosis on the training runs. Throws Failure (numerics_failed) if the model cannot be simulated along them.
 Diagnosis diagnose(const DiagnosisInput& input, const attribution::SelectionRules& rules);

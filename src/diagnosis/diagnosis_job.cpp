@@ -135,11 +135,9 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   phases.insert(phases.end(), last.begin(), last.end());
   progress.expect(std::move(phases));
   progress.begin(kReading);
-  settle_turning_rows(input);
-  // Runs without such rows do not show how the speed changes within them.
-  const bool is_unknown = std::ranges::none_of(input.train, estimation::may_turn_within_rows);
-  model.is_speed_linear = is_unknown ? job.motor.fit && job.motor.fit->is_speed_linear : input.turns_within_rows;
-  if (input.turns_within_rows) {
+  const std::optional<bool> is_speed_linear = estimation::settle_turning_rows(input.model, input.train);
+  model.is_speed_linear = is_speed_linear.value_or(job.motor.fit && job.motor.fit->is_speed_linear);
+  if (is_speed_linear.value_or(false)) {
     findings.emplace_back(calibration::RowsTurn{});
   }
   if (std::vector<std::string> rare = estimation::keep_common_columns(input.train, input.model.columns); !rare.empty()) {
@@ -169,7 +167,7 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   answer.score.runs = std::move(holdout.runs);
   std::ranges::move(holdout.findings, std::back_inserter(findings));
   if (model.is_speed_linear) {
-    std::ranges::transform(answer.score.runs, answer.score.runs.begin(), estimation::turning_within_rows);
+    answer.score.runs = estimation::turning_within_rows(std::move(answer.score.runs));
   }
   estimation::set_columns(answer.score.runs, columns);
   answer.score.beyond_training = beyond_fitted(answer.diagnosis.runs, answer.score.runs);

@@ -1,7 +1,12 @@
 #include "estimation/turning_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "base/parallel.h"
+#include "estimation/fit.h"
 
 namespace heatsoak::estimation {
 namespace {
@@ -56,6 +61,27 @@ MeasuredRun turning_within_rows(MeasuredRun run) {
   });
   run.at = std::move(at);
   return run;
+}
+
+std::vector<MeasuredRun> turning_within_rows(std::vector<MeasuredRun> runs) {
+  for (MeasuredRun& run : runs) {
+    run = turning_within_rows(std::move(run));
+  }
+  return runs;
+}
+
+std::optional<bool> settle_turning_rows(const Model& model, std::vector<MeasuredRun>& runs) {
+  if (std::ranges::none_of(runs, may_turn_within_rows)) {
+    return std::nullopt;
+  }
+  std::vector<MeasuredRun> turning = turning_within_rows(runs);
+  std::array<double, 2> nats{};
+  base::in_parallel(nats.size(), 0, [&](std::size_t i) { nats[i] = evidence_nats(model, i == 0 ? runs : turning); });
+  const bool is_linear = nats[1] > nats[0];
+  if (is_linear) {
+    runs = std::move(turning);
+  }
+  return is_linear;
 }
 
 }  // namespace heatsoak::estimation

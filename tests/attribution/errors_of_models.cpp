@@ -1,10 +1,8 @@
 #include "errors_of_models.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "estimation/log_columns.h"
-#include "estimation/turning_rows.h"
 
 namespace heatsoak::attribution {
 
@@ -12,9 +10,6 @@ ErrorsOfModels errors_of_models(const diagnosis::DiagnosisInput& input, const di
                                 std::vector<estimation::MeasuredRun> unseen) {
   ErrorsOfModels errors;
   const estimation::Model& after = diagnosis.selection.after.model;
-  if (input.turns_within_rows) {
-    std::ranges::transform(unseen, unseen.begin(), estimation::turning_within_rows);
-  }
   estimation::set_columns(unseen, after.columns);
   errors.before = estimation::open_loop_errors(input.model, unseen, diagnosis.runs);
   errors.refitted = estimation::open_loop_errors(diagnosis.selection.own.model, unseen, diagnosis.runs);

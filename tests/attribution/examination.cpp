@@ -13,6 +13,7 @@
 #include "drive_rows.h"
 #include "estimation/log_columns.h"
 #include "estimation/measured_run.h"
+#include "estimation/turning_rows.h"
 
 namespace heatsoak::attribution::truth {
 namespace {
@@ -195,10 +196,10 @@ diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs) {
   return input;
 }
 
-std::vector<estimation::MeasuredRun> holdout(const Runs& runs) {
+std::vector<estimation::MeasuredRun> holdout(const Runs& runs, bool is_speed_linear) {
   std::vector<estimation::MeasuredRun> all;
   std::ranges::transform(runs.unseen, std::back_inserter(all), measured);
-  return all;
+  return is_speed_linear ? estimation::turning_within_rows(std::move(all)) : all;
 }
 
 std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection) {
@@ -212,10 +213,10 @@ Answer examine(const Case& sealed) {
   diagnosis::DiagnosisInput input = question(sealed, runs);
   const auto begin = std::chrono::steady_clock::now();
   Answer answer;
-  diagnosis::settle_turning_rows(input);
+  const std::optional<bool> is_speed_linear = estimation::settle_turning_rows(input.model, input.train);
   answer.diagnosis = diagnosis::diagnose(input, {});
   answer.seconds_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  answer.score = errors_of_models(input, answer.diagnosis, holdout(runs));
+  answer.score = errors_of_models(input, answer.diagnosis, holdout(runs, is_speed_linear.value_or(false)));
   const Selection& selection = answer.diagnosis.selection;
   for (const AcceptedTerm& term : selection.terms) {
     const std::string curve =

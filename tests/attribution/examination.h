@@ -60,8 +60,8 @@ estimation::MeasuredRun measured(const TrueRun& run);
 
 /// Input of the diagnosis, without any hint of the missing effect.
 diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs);
-/// Runs for scoring only.
-std::vector<estimation::MeasuredRun> holdout(const Runs& runs);
+/// Runs for scoring only, with the speed within rows in which the motor may reverse (turning_rows.h).
+std::vector<estimation::MeasuredRun> holdout(const Runs& runs, bool is_speed_linear = false);
 
 /// Returns the run that contradicts the others, after a diagnosis.
 std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection);

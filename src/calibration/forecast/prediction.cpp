@@ -103,7 +103,7 @@ void predict_one(const motor::Motor& motor, const recording::Recording& recordin
     all.missing.push_back(std::move(each));
   }
   if (motor.fit && motor.fit->is_speed_linear) {
-    std::ranges::transform(runs, runs.begin(), estimation::turning_within_rows);
+    runs = estimation::turning_within_rows(std::move(runs));
   }
   const FileModel file = model_of_file(std::move(setup), motor, runs);
   if (file.unseen_loss_W > 0.0) {
