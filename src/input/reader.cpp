@@ -98,10 +98,16 @@ std::vector<std::string> Reader::texts(std::string_view key, Need need) {
 }
 
 std::optional<std::string> Reader::choice(std::string_view key, std::span<const std::string_view> choices, Need need) {
+  const std::vector<std::string> names(choices.begin(), choices.end());
+  const std::string expected = fmt::format("{}{}", names.size() > 1 ? "one of " : "", fmt::join(names, ", "));
+  if (const Value* value = table_->find(key); value && value->kind != Value::Kind::text) {
+    pass_over(key);
+    problem(key, fmt::format("is {}, expected {}", to_string(value->kind), expected));
+    return std::nullopt;
+  }
   std::optional<std::string> given = text(key, need);
   if (given && std::ranges::find(choices, *given) == choices.end()) {
-    const std::vector<std::string> names(choices.begin(), choices.end());
-    problem(key, fmt::format("'{}' is not known; expected one of {}{}", *given, fmt::join(names, ", "), base::did_you_mean(*given, names)));
+    problem(key, fmt::format("'{}' is not known; expected {}{}", *given, expected, base::did_you_mean(*given, names)));
     return std::nullopt;
   }
   return given;

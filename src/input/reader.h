@@ -27,7 +27,7 @@ class Reader {
   std::optional<std::string> text(std::string_view key, Need need);
   std::optional<bool> flag(std::string_view key, Need need);
   std::vector<std::string> texts(std::string_view key, Need need);
-  /// Returns one of `choices`; any other text is a problem whose message lists them.
+  /// Returns one of `choices`; any other value is a problem whose message lists them.
   std::optional<std::string> choice(std::string_view key, std::span<const std::string_view> choices, Need need);
   /// Returns a quantity written as text with a unit, converted to the unit of `spec` and checked against its range.
   std::optional<double> quantity(const base::ParameterSpec& spec, Need need);

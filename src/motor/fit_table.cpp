@@ -141,17 +141,9 @@ std::string training_text(const TrainingRange& range) {
   return text.empty() ? "" : "# conditions and ranges of the fitted runs: forecasts outside are extrapolations\n" + text;
 }
 
-constexpr std::string_view kLinear = "linear";
+/// Without the key, the speed is constant within a row.
+constexpr std::array<std::string_view, 1> kSpeedsWithinRows{"linear"};
 constexpr int kBandDigits = 2;
-
-bool read_is_speed_linear(input::Reader& table) {
-  const std::optional<std::string> word = table.text("speed_within_rows", input::Need::optional);
-  if (word && *word != kLinear) {
-    table.problem("speed_within_rows",
-                  fmt::format("'{}' is unknown; expected \"{}\"; without this key the speed is constant within a row", *word, kLinear));
-  }
-  return word == kLinear;
-}
 
 std::string band_text(const ForecastBand& band) {
   return fmt::format(
@@ -217,7 +209,7 @@ MotorFit read_fit(input::Reader& table, std::span<const std::string> parameters)
                      input::Need::optional);
   fit.extensions = table.texts("extensions", input::Need::optional);
   fit.heat_input = read_heat_input(table);
-  fit.is_speed_linear = read_is_speed_linear(table);
+  fit.is_speed_linear = table.choice("speed_within_rows", kSpeedsWithinRows, input::Need::optional).has_value();
   fit.training = read_training(table);
   fit.band = read_band(table);
   table.finish();
@@ -258,7 +250,8 @@ std::string to_toml(const MotorFit& fit) {
               ? fmt::format("# the thermal values hold for heat from this input of a log\nheat_input = \"{}\"\n", name_of(*fit.heat_input))
               : "";
   text += fit.is_speed_linear
-              ? fmt::format("# in rows in which the motor may reverse, its speed changes linearly\nspeed_within_rows = \"{}\"\n", kLinear)
+              ? fmt::format("# in rows in which the motor may reverse, its speed changes linearly\nspeed_within_rows = \"{}\"\n",
+                            kSpeedsWithinRows.front())
               : "";
   text += training_text(fit.training);
   return text + (fit.band ? band_text(*fit.band) : "");

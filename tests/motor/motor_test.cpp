@@ -279,11 +279,15 @@ TEST(MotorFit, states_how_the_speed_changes_within_rows) {
   ASSERT_TRUE(motor.fit);
   EXPECT_TRUE(motor.fit->is_speed_linear);
   EXPECT_THAT(to_toml(motor), testing::HasSubstr("speed_within_rows = \"linear\""));
-  try {
-    motor_with("between_terminals", "per_dc_ampere", text.replace(place, 2, "cubic"));
-    FAIL() << "accepted";
-  } catch (const base::Failure& failure) {
-    EXPECT_THAT(failure.what(), testing::HasSubstr("'cubic' is unknown; expected \"linear\""));
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"\"cubic\"", "'cubic' is not known; expected linear"}, {"1", "is a number, expected linear"}, {"true", "expected linear"}};
+  for (const auto& [value, expected] : wrong) {
+    try {
+      motor_with("between_terminals", "per_dc_ampere", std::string(text).replace(place - 1, 4, value));
+      FAIL() << "accepted";
+    } catch (const base::Failure& failure) {
+      EXPECT_THAT(failure.what(), testing::HasSubstr(expected));
+    }
   }
 }
 
