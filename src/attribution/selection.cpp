@@ -91,14 +91,17 @@ class Selector : Rounds {
   }
 
   /// Returns the probability of a name. What differs in some runs is one question, so its probability includes the effects of the same
-  /// runs that may replace it. The answer lists them as indistinguishable.
+  /// runs, or of exactly the others, that may replace it. The answer lists them as indistinguishable.
   [[nodiscard]] double probability_of(const EffectSet& best, std::size_t member) const {
     const estimation::Condition own = condition_of(best.members[member]);
     if (own.empty()) {
       return search_->family_probability(best, member);
     }
     std::vector<int> others = search_->stand_ins(best, member, estimation::thresholds().distinct_nats);
-    std::erase_if(others, [&](int other) { return condition_of(other) != own; });
+    std::erase_if(others, [&](int other) {
+      const estimation::Condition where = condition_of(other);
+      return where != own && std::ranges::any_of(input_.runs, [&](const auto& run) { return run.has(where) == run.has(own); });
+    });
     return search_->family_probability(best, member, others);
   }
 

@@ -13,6 +13,7 @@
 #include "calibration/error_before_after.h"
 #include "calibration/training_range.h"
 #include "calibration/unlogged_speed.h"
+#include "calibration/written_forecast.h"
 #include "estimation/interval.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
@@ -161,7 +162,7 @@ void set_parameters(motor::Motor& motor, const ModelOfLogs& model, const estimat
     const std::string source = parameter.source;
     const base::Origin origin = parameter.origin;
     parameter = measured(value, value * std::exp(-estimation::kInterval_sd * sd), value * std::exp(estimation::kInterval_sd * sd),
-                         base::Range::positive());
+                         calibration::possible_range(motor, each.name));
     parameter.derivation =
         source.empty() ? "fit to measured temperatures" : fmt::format("fit to measured temperatures; before the fit: {}", source);
     if (!calibration::is_identifiable(sd, each)) {
@@ -196,23 +197,24 @@ void forget_fit(motor::Motor& motor, const std::vector<recording::Recording>& re
   if (!motor.fit || std::ranges::none_of(recordings, is_fitted)) {
     return;
   }
-  const auto forget = [](base::ParameterValue& parameter) {
+  const auto forget = [](base::ParameterValue& parameter, const base::Range& possible) {
     // The other parameters were not identifiable in that fit and kept their own uncertainty.
     if (parameter.origin == base::Origin::measured && parameter.value > 0.0) {
-      parameter.spread = base::Spread{base::Spread::Kind::range, parameter.value * std::exp(-2.0 * calibration::kSheet_sd),
-                                      parameter.value * std::exp(2.0 * calibration::kSheet_sd), true};
+      parameter.spread =
+          base::Spread{base::Spread::Kind::range, std::max(parameter.value * std::exp(-2.0 * calibration::kSheet_sd), possible.low),
+                       std::min(parameter.value * std::exp(2.0 * calibration::kSheet_sd), possible.high), true};
     }
   };
   for (const std::string& name : motor.fit->parameters) {
     if (base::ParameterValue* const parameter = motor::find_parameter(motor, name)) {
-      forget(*parameter);
+      forget(*parameter, calibration::possible_range(motor, name));
     }
   }
   // Parameters of effects without an interval are held.
   for (motor::MotorEffect& effect : motor.effects) {
-    for (base::ParameterValue& parameter : effect.parameters) {
-      if (parameter.spread) {
-        forget(parameter);
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (effect.parameters[i].spread) {
+        forget(effect.parameters[i], effect.type->parameters[i].range);
       }
     }
   }

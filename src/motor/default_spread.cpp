@@ -92,10 +92,9 @@ Ratios least_ratios(const DefaultRow& row, base::Origin origin, bool is_fitted) 
   return origin == base::Origin::measured ? Ratios{1.0 - std::min(low, least), 1.0 + std::min(high, least)} : Ratios{1.0 - low, 1.0 + high};
 }
 
-/// Returns whether the file records the fit that a measured value comes from.
-bool is_fitted(const Motor& motor, std::string_view key, const base::ParameterValue& parameter) {
-  return parameter.origin == base::Origin::measured && motor.fit &&
-         std::ranges::find(motor.fit->parameters, key) != motor.fit->parameters.end();
+/// Returns whether the file records the fit that a value comes from. A value that the fit does not determine alone keeps its origin.
+bool is_fitted(const Motor& motor, std::string_view key) {
+  return motor.fit && std::ranges::find(motor.fit->parameters, key) != motor.fit->parameters.end();
 }
 
 /// Returns whether the stated spread is too narrow. A bound at the end of the declared range is always wide enough.
@@ -165,7 +164,7 @@ std::vector<DefaultSpread> default_spreads(const Motor& motor) {
   std::vector<DefaultSpread> missing;
   for_each_value(motor,
                  [&](const std::string& key, const base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
-                   if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
+                   if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key))) {
                      missing.push_back({key, parameter.origin, parameter.value, *spread});
                    }
                  });
@@ -176,7 +175,7 @@ std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
   std::vector<NarrowSpread> narrow;
   for_each_value(motor,
                  [&](const std::string& key, const base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
-                   const bool fitted = is_fitted(motor, key, parameter);
+                   const bool fitted = is_fitted(motor, key);
                    const base::Spread least = spread_by(least_ratios(row, parameter.origin, fitted), parameter, range);
                    if (parameter.value != 0.0 && !is_exact(parameter) && is_narrow(parameter, least, range)) {
                      narrow.push_back({key, &parameter, least, fitted});
@@ -187,7 +186,7 @@ std::vector<NarrowSpread> narrow_spreads(const Motor& motor) {
 
 Motor with_default_spreads(Motor motor) {
   for_each_value(motor, [&motor](const std::string& key, base::ParameterValue& parameter, const DefaultRow& row, const base::Range& range) {
-    if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key, parameter))) {
+    if (const std::optional<base::Spread> spread = replacement(row, parameter, range, is_fitted(motor, key))) {
       parameter.spread = spread;
     }
   });
@@ -201,8 +200,7 @@ std::optional<base::Spread> spread_or_default(const Motor& motor, std::string_vi
     return std::nullopt;
   }
   const DefaultRow* const row = row_of(key);
-  const std::optional<base::Spread> other =
-      row ? replacement(*row, found->second, spec->spec.range, is_fitted(motor, key, found->second)) : std::nullopt;
+  const std::optional<base::Spread> other = row ? replacement(*row, found->second, spec->spec.range, is_fitted(motor, key)) : std::nullopt;
   return other ? other : found->second.spread;
 }
 

@@ -329,9 +329,12 @@ Motor read_motor(const std::filesystem::path& path, base::Diagnostics& diagnosti
 
 namespace {
 
+/// Scales all temperature rises as a factor on the heat would. The resistances stay within their possible range.
 void scale_heat(MotorValues& values, double heat_ratio) {
-  values.thermal_resistance_winding_stator_K_per_W *= heat_ratio;
-  values.thermal_resistance_stator_ambient_K_per_W *= heat_ratio;
+  for (double* const resistance_K_per_W :
+       {&values.thermal_resistance_winding_stator_K_per_W, &values.thermal_resistance_stator_ambient_K_per_W}) {
+    *resistance_K_per_W = std::clamp(*resistance_K_per_W * heat_ratio, kThermalResistance.low, kThermalResistance.high);
+  }
 }
 
 }  // namespace

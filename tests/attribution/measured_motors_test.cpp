@@ -50,6 +50,25 @@ TEST(MeasuredMotors, an_undocumented_fan_is_found_in_the_run_that_had_it) {
   }
 }
 
+/// The condition has two values, so a heat share with the fan and one without it are the same statement.
+TEST(MeasuredMotors, a_fan_that_the_logs_state_is_found) {
+  SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
+  const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");
+  for (const bool is_for_forecasts : {true, false}) {
+    Drone all = drone(*folder, is_for_forecasts);
+    for (auto& [name, run] : all.run) {
+      run.conditions = {{"fan", name == "run4" ? "on" : "off"}};
+    }
+    const Diagnosed found = diagnosed(all, 0.6);
+    EXPECT_TRUE(effect_of(found.diagnosis, "airflow")) << account(found.diagnosis);
+    EXPECT_TRUE(effect_of(found.diagnosis, "heat_share")) << account(found.diagnosis);
+    const std::vector<estimation::MeasuredRun> run4 = runs_of(found.model, {all.run["run4"]});
+    EXPECT_LT(rms_K(found.diagnosis.selection.after.model, run4, "stator_C"),
+              0.25 * rms_K(found.diagnosis.selection.own.model, run4, "stator_C"))
+        << account(found.diagnosis);
+  }
+}
+
 TEST(MeasuredMotors, a_fan_is_found_from_another_start_too) {
   SKIP_WITHOUT_MEASURED_DATA("tasrv_uav_motor");
   const std::optional<std::filesystem::path> folder = measured_data("tasrv_uav_motor");

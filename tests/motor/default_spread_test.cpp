@@ -166,6 +166,20 @@ TEST(DefaultSpread, AFitThatIsSurerThanItsSensorsIsWidenedAndNotRefused) {
   EXPECT_THAT(default_spreads(motor), IsEmpty());
 }
 
+/// A fit narrows a time constant of a data sheet that it does not determine alone.
+TEST(DefaultSpread, AFittedValueThatKeepsItsOriginIsWidenedAndNotRefused) {
+  Motor motor = ecx_32();
+  base::ParameterValue& parameter = motor.parameters.at("thermal_time_constant_stator");
+  parameter.origin = base::Origin::datasheet;
+  parameter.source = "sheet, calibration";
+  parameter.spread = of_percent(parameter, 1.3, 1.3);
+  EXPECT_THAT(message_of_refusal(motor), HasSubstr("narrow_values")) << "the file records no fit";
+  motor.fit.emplace().parameters = {"thermal_time_constant_stator"};
+  EXPECT_EQ(message_of_refusal(motor), "");
+  EXPECT_EQ(std::ranges::count(lint(motor), "narrow_values", &LintFinding::check), 0);
+  EXPECT_LT(with_default_spreads(motor).parameters.at("thermal_time_constant_stator").spread->low, 0.94 * parameter.value);
+}
+
 TEST(DefaultSpread, AFileThatACalibrationWroteGetsNoNoteAboutIt) {
   Motor motor = ecx_32();
   base::ParameterValue& parameter = motor.parameters.at("thermal_resistance_stator_ambient");

@@ -291,6 +291,28 @@ TEST(MotorFit, states_how_the_speed_changes_within_rows) {
   }
 }
 
+/// Measured heat may be uncertain by a factor of three, but no model has a resistance outside of its range.
+TEST(MotorFit, a_wide_heat_factor_leaves_resistances_possible) {
+  std::string text = kFit;
+  text.replace(text.find("%s"), 2, "linear");
+  text.replace(text.find("\"0.0345\""), 8, "\"3\"");
+  const Motor motor = motor_with("between_terminals", "per_dc_ampere", text);
+  double least_K_per_W = 1.0;
+  double most_K_per_W = 1.0;
+  for (std::uint64_t stream = 0; stream < 2000; ++stream) {
+    base::Random random(3, stream);
+    const MotorValues values = draw_sample(motor, random).values;
+    for (const double resistance_K_per_W :
+         {values.thermal_resistance_winding_stator_K_per_W, values.thermal_resistance_stator_ambient_K_per_W}) {
+      least_K_per_W = std::min(least_K_per_W, resistance_K_per_W);
+      most_K_per_W = std::max(most_K_per_W, resistance_K_per_W);
+    }
+  }
+  EXPECT_EQ(least_K_per_W, 1e-3);
+  EXPECT_EQ(most_K_per_W, 1e3);
+  EXPECT_EQ(at_upper_band(motor)->nominal.thermal_resistance_stator_ambient_K_per_W, 1e3);
+}
+
 TEST(MotorFit, band_is_rounded_as_in_its_file) {
   const Motor motor =
       motor_with("between_terminals", "per_dc_ampere", std::string(kFit).replace(std::string(kFit).find("%s"), 2, "linear"));

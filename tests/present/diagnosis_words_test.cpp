@@ -164,7 +164,7 @@ TEST(WordsOfDiagnosis, ContradictedGuessesNeedARange) {
   answer.diagnosis.verdict = diagnosis::DiagnosisVerdict::not_identifiable;
   answer.diagnosis.changed.emplace_back();
   const std::string text = testing::PrintToString(diagnosis_words(answer));
-  EXPECT_THAT(text, HasSubstr("If the file's values are guesses, state the range"));
+  EXPECT_THAT(text, HasSubstr("values are guesses, give all of them a range"));
   EXPECT_THAT(text, testing::Not(HasSubstr("hardly")));
 }
 

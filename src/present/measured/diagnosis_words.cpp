@@ -139,7 +139,7 @@ std::string verdict_in_words(const diagnosis::Diagnosis& diagnosis) {
   if (!diagnosis.changed.empty()) {
     return "The runs contradict the file's parameters. Either these have changed (another mounting, another specimen of the motor), "
            "or a missing effect acts like such a change; these runs do not determine which. No effect is named, and the parameters are "
-           "fitted to these runs. If the file's values are guesses, state the range that contains each in the file, and repeat the "
+           "fitted to these runs. If the file's thermal values are guesses, give all of them a range in the file, and repeat the "
            "diagnosis.";
   }
   return !diagnosis.selection.is_undecided()
