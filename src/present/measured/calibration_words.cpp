@@ -84,8 +84,8 @@ std::string say(const calibration::LargeChange& of) {
 std::string say(const calibration::OutsideDeclaredRange& of) {
   const std::string unit = of.unit.empty() ? "" : fmt::format(" {}", base::unit_for_display(of.unit));
   return fmt::format(
-      "{} becomes {}{}, outside of its declared range of {} to {}{}: check the units of the logs, or whether the range still holds for "
-      "this motor and its mounting",
+      "{} becomes {}{}, outside of its declared range of {} to {}{}: check the units of the logs, and whether the range holds for this "
+      "motor and its mounting; state a wider range if the value is a guess",
       of.parameter, base::significant(of.value, 3), unit, base::significant(of.low, 3), base::significant(of.high, 3), unit);
 }
 
