@@ -108,12 +108,12 @@ class Calibrating {
     all_.next_experiment = next_experiment(all_.open);
     forecast();
     report_large_changes();
-    all_.fit_error = errors();
+    errors();
     refuse_where_nothing_is_explained();
     std::ranges::move(outside_declared_ranges(motor, all_.parameters), std::back_inserter(all_.findings));
     report_common_factor();
     report_terminal_resistance(motor);
-    report_grown_errors(false, all_.fit_error);
+    report_grown_errors(false, pooled_error_);
     refuse_where_nothing_was_learned();
     report_poor_fit();
     score_holdout(motor);
@@ -170,13 +170,14 @@ class Calibrating {
     return all;
   }
 
-  /// Errors of the original and of the written file over the fitted runs.
-  std::vector<ErrorBeforeAfter> errors() {
+  /// Computes the errors of the original and of the written file in the fitted runs.
+  void errors() {
     const ForecastModel base = setup_.model();
     all_.fitted_before = fitted_runs(base, base.start(), runs_as_in_file_);
     all_.fitted_after = all_.is_forecast_written ? fitted_runs(all_.forecast->model(), all_.forecast->fit.theta, all_.runs)
                                                  : fitted_runs(base, all_.fit.theta, all_.runs);
-    return errors_over_runs(all_.fitted_before, all_.fitted_after);
+    all_.fit_error = worst_errors(all_.fitted_before, all_.fitted_after);
+    pooled_error_ = errors_over_runs(all_.fitted_before, all_.fitted_after);
   }
 
   /// Predicts the hold-out runs. The calibration does not depend on the result.
@@ -389,7 +390,7 @@ class Calibrating {
 
   /// Refuses if neither fit follows the runs: its parameters would mean nothing.
   void refuse_where_nothing_is_explained() const {
-    std::vector<PoorFit> signals = not_followed(all_.fit_error);
+    std::vector<PoorFit> signals = not_followed(pooled_error_);
     if (!signals.empty() && !not_followed(innovations_error_).empty()) {
       throw NothingFollows(std::move(signals), all_.motor_model.nuisances.empty());
     }
@@ -398,7 +399,7 @@ class Calibrating {
   void report_poor_fit() {
     constexpr double kFar_K = 15.0;
     constexpr double kFar_share = 0.2;
-    for (const ErrorBeforeAfter& each : all_.fit_error) {
+    for (const ErrorBeforeAfter& each : pooled_error_) {
       const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
       if (each.after.rmse_K > std::max(kFar_K, kFar_share * moves_K)) {
         all_.findings.push_back(PoorFit{each.signal, each.after.rmse_K, moves_K});
@@ -410,6 +411,7 @@ class Calibrating {
   std::span<const recording::Recording> holdout_;
   const CalibrationOptions& options_;
   ForecastSetup setup_;
+  std::vector<ErrorBeforeAfter> pooled_error_;            ///< over all fitted runs; decides whether the model follows them
   std::vector<ErrorBeforeAfter> innovations_error_;       ///< errors of the innovations fit in the fitted runs
   std::vector<estimation::MeasuredRun> runs_as_in_file_;  ///< speed within rows as the motor file states
   bool is_learned_ = false;                               ///< the innovations fit determined or narrowed at least one parameter

@@ -125,7 +125,7 @@ struct Calibration {
   Eigen::MatrixXd correlation;  ///< correlation of the logarithms of the motor file's parameters, in the order of `parameters`
   std::vector<OpenDirection> open;
   std::optional<Remedy> next_experiment;    ///< nullopt if nothing is open
-  std::vector<ErrorBeforeAfter> fit_error;  ///< per signal: errors in the fitted runs, of the original and the written file
+  std::vector<ErrorBeforeAfter> fit_error;  ///< per signal, in the fitted run with the largest error: original and written file
   std::optional<Forecast> forecast;         ///< forecast fit, its rivals and its error band
   bool is_forecast_written = false;         ///< true: `parameters` are from the forecast fit; false: from the innovations fit
   std::vector<motor::MotorEffect> effects;  ///< effects of the written file

@@ -32,13 +32,6 @@ constexpr double kOtherMounting = 0.1;
 /// Ratio from which an error counts as larger.
 constexpr double kWorse_ratio = 1.1;
 
-/// Returns the errors without run deviations, which the motor file does not contain.
-estimation::Errors errors_of_file(estimation::Model model, const std::vector<estimation::MeasuredRun>& runs,
-                                  const std::vector<estimation::MeasuredRun>& before_them) {
-  model.deviations.clear();
-  return estimation::open_loop_errors(model, runs, before_them);
-}
-
 class DiagnosisReport {
  public:
   DiagnosisReport(const DiagnosisInput& input, attribution::Selection selection) : input_(input) {
@@ -87,7 +80,25 @@ class DiagnosisReport {
     out_.before_train = estimation::open_loop_errors(input_.model, input_.train, {});
     out_.refitted_train = estimation::open_loop_errors(out_.selection.own.model, input_.train, {});
     out_.after_train = estimation::open_loop_errors(after().model, input_.train, {});
-    out_.file_train = errors_of_file(after().model, input_.train, {});
+    estimation::Model file = after().model;
+    file.deviations.clear();  // the motor file does not contain them
+    std::map<std::string, std::vector<estimation::MeasuredRun>> recordings;
+    for (const estimation::MeasuredRun& run : input_.train) {
+      recordings[estimation::recording_of(run)].push_back(run);
+    }
+    std::map<std::string, double> worst_K;
+    for (const auto& [name, runs] : recordings) {
+      const estimation::Errors given = estimation::open_loop_errors(input_.model, runs, {});
+      const estimation::Errors refitted = estimation::open_loop_errors(out_.selection.own.model, runs, {});
+      const estimation::Errors of_file = estimation::open_loop_errors(file, runs, {});
+      for (const auto& [signal, error] : estimation::open_loop_errors(after().model, runs, {})) {
+        out_.train_errors.push_back({name, signal, given.at(signal), refitted.at(signal), error});
+        if (const auto [worst, is_first] = worst_K.emplace(signal, error.rmse_K); is_first || error.rmse_K > worst->second) {
+          worst->second = error.rmse_K;
+          out_.file_train[signal] = of_file.at(signal);
+        }
+      }
+    }
   }
 
   void report_flux() {

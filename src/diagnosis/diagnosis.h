@@ -8,6 +8,7 @@
 
 #include "attribution/scan_term.h"
 #include "base/job_progress.h"
+#include "diagnosis/error_in_run.h"
 #include "diagnosis/findings.h"
 #include "diagnosis/found_effects.h"
 #include "estimation/free_run_errors.h"
@@ -101,9 +102,9 @@ struct Diagnosis {
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> changed;
   std::vector<Unexplained> unexplained;
-  estimation::Errors before_train, after_train;
-  estimation::Errors refitted_train;          ///< errors with only the model's own parameters refitted to the training runs
-  estimation::Errors file_train;              ///< errors of the written motor file alone, without run deviations
+  std::vector<ErrorInRun> train_errors;                          ///< errors in the training runs, per run and signal
+  estimation::Errors before_train, after_train, refitted_train;  ///< errors over all training runs, for remarks
+  estimation::Errors file_train;              ///< errors of the written file in the runs of worst_runs(), without run deviations
   std::vector<estimation::MeasuredRun> runs;  ///< training runs
   std::vector<estimation::InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;

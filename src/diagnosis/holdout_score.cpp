@@ -27,23 +27,10 @@ HoldoutScore score_holdout(const ScoredFiles& files, const std::vector<recording
   return score;
 }
 
-std::vector<HoldoutError> worst_runs(const HoldoutScore& score) {
-  std::vector<HoldoutError> worst;
-  for (const HoldoutError& each : score.errors) {
-    const auto found = std::ranges::find(worst, each.signal, &HoldoutError::signal);
-    if (found == worst.end()) {
-      worst.push_back(each);
-    } else if (each.after.rmse_K > found->after.rmse_K) {
-      *found = each;
-    }
-  }
-  return worst;
-}
-
-double rms_of_run_K(const HoldoutScore& score, const std::string& run, estimation::ErrorOfSignal HoldoutError::*file) {
+double rms_of_run_K(const HoldoutScore& score, const std::string& run, estimation::ErrorOfSignal ErrorInRun::*file) {
   double squares_K2 = 0.0;
   int count = 0;
-  for (const HoldoutError& each : score.errors) {
+  for (const ErrorInRun& each : score.errors) {
     if (each.run == run) {
       squares_K2 += std::pow((each.*file).rmse_K, 2);
       ++count;

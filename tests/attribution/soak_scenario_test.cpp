@@ -41,7 +41,7 @@ TEST(SoakScenario, TheChassisIsNamedAndHelpsOnAnUnseenMatch) {
                  fmt::format("{} or {}", effect.id, fmt::join(effect.confusable_with, ", ")));
     claim.expect(effect.node == "stator", "node " + effect.node);
     claim.expect(effect.probability > 0.95, fmt::format("probability {}", effect.probability));
-    for (const diagnosis::HoldoutError& each : answer.score.errors) {
+    for (const diagnosis::ErrorInRun& each : answer.score.errors) {
       claim.expect(each.after.rmse_K < 0.6 * each.before.rmse_K, "error of " + each.signal + " in " + each.run);
     }
   });

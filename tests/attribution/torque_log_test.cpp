@@ -60,7 +60,7 @@ diagnosis::DiagnosisAnswer answer_of(const Runs& runs, Form form) {
 
 double worst_K(const diagnosis::HoldoutScore& score) {
   double worst = 0.0;
-  for (const diagnosis::HoldoutError& each : score.errors) {
+  for (const diagnosis::ErrorInRun& each : score.errors) {
     worst = std::max(worst, each.after.rmse_K);
   }
   return worst;

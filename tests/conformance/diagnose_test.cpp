@@ -201,6 +201,11 @@ TEST(Diagnose, ScoresEachHoldoutRunWithThreeFilesAlike) {
       worst_K = std::max(worst_K, after_K);
     }
     EXPECT_EQ(answer["after"]["holdout"][signal]["rmse_K"].get<double>(), worst_K) << signal;
+    double worst_train_K = 0.0;
+    for (const nlohmann::json& each : answer["runs"]["train"]) {
+      worst_train_K = std::max(worst_train_K, each["error"][signal]["rmse_K"].get<double>());
+    }
+    EXPECT_EQ(answer["after"]["train"][signal]["rmse_K"].get<double>(), worst_train_K) << signal;
     for (const char* model : {"before", "refitted", "after"}) {
       for (const nlohmann::json& each : runs[model]) {
         if (each["name"] == answer["holdout_run"][signal]) {

@@ -180,7 +180,7 @@ Document calibration_document(const motor::Motor& motor, const calibration::Cali
                            {"largest: fit", "", 0},
                            {"samples", "", 1}},
                .rows = {}};
-  add_errors(errors, "fit", result.fit_error);
+  add_errors(errors, result.fitted_after.size() > 1 ? "worst fit" : "fit", result.fit_error);
   add_errors(errors, result.holdout_after.size() > 1 ? "worst hold-out" : "hold-out", result.holdout_error);
   document.tables.push_back(std::move(errors));
   if (result.forecast && !result.forecast->rivals.empty()) {

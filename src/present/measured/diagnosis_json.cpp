@@ -22,6 +22,22 @@ Json errors_json(const estimation::Errors& errors) {
   return json;
 }
 
+Json errors_json(const std::vector<diagnosis::ErrorInRun>& worst, estimation::ErrorOfSignal diagnosis::ErrorInRun::*file) {
+  estimation::Errors errors;
+  for (const diagnosis::ErrorInRun& each : worst) {
+    errors[each.signal] = each.*file;
+  }
+  return errors_json(errors);
+}
+
+Json runs_of_signals(const std::vector<diagnosis::ErrorInRun>& worst) {
+  Json json = Json::object();
+  for (const diagnosis::ErrorInRun& each : worst) {
+    json[each.signal] = each.run;
+  }
+  return json;
+}
+
 /// Returns the names in the catalogue: "constant_heat" for "constant_heat@stator in run4".
 std::vector<std::string> plain_ids(const std::vector<std::string>& candidates) {
   std::vector<std::string> ids;
@@ -151,21 +167,17 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   for (const diagnosis::FoundEffect& effect : diagnosis.effects) {
     json["effects"].push_back(effect_json(effect));
   }
-  const auto holdout = [worst = diagnosis::worst_runs(score)](estimation::ErrorOfSignal diagnosis::HoldoutError::*file) {
-    estimation::Errors errors;
-    for (const diagnosis::HoldoutError& each : worst) {
-      errors[each.signal] = each.*file;
-    }
-    return errors_json(errors);
-  };
-  json["before"] = {{"train", errors_json(diagnosis.before_train)}, {"holdout", holdout(&diagnosis::HoldoutError::before)}};
-  json["after"] = {{"train", errors_json(diagnosis.after_train)}, {"holdout", holdout(&diagnosis::HoldoutError::after)}};
-  json["refitted"] = {{"train", errors_json(diagnosis.refitted_train)}, {"holdout", holdout(&diagnosis::HoldoutError::refitted)}};
-  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", holdout(&diagnosis::HoldoutError::after)}};
-  json["holdout_run"] = Json::object();
-  for (const diagnosis::HoldoutError& each : diagnosis::worst_runs(score)) {
-    json["holdout_run"][each.signal] = each.run;
+  const std::vector<diagnosis::ErrorInRun> train = diagnosis::worst_runs(diagnosis.train_errors);
+  const std::vector<diagnosis::ErrorInRun> holdout = diagnosis::worst_runs(score.errors);
+  using File = estimation::ErrorOfSignal diagnosis::ErrorInRun::*;
+  for (const auto& [key, file] : {std::pair<const char*, File>{"before", &diagnosis::ErrorInRun::before},
+                                  {"refitted", &diagnosis::ErrorInRun::refitted},
+                                  {"after", &diagnosis::ErrorInRun::after}}) {
+    json[key] = {{"train", errors_json(train, file)}, {"holdout", errors_json(holdout, file)}};
   }
+  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(holdout, &diagnosis::ErrorInRun::after)}};
+  json["train_run"] = runs_of_signals(train);
+  json["holdout_run"] = runs_of_signals(holdout);
   json["forecast_band"] = nullptr;
   if (answer.band) {
     json["forecast_band"] = band_json(*answer.motor.fit->band);

@@ -40,12 +40,10 @@ std::string error_table(const diagnosis::Diagnosis& diagnosis, const diagnosis::
     text += row({signal, where, fmt::format("{:.2f}", before.rmse_K), fmt::format("{:.2f}", refitted.rmse_K),
                  fmt::format("{:.2f}", after.rmse_K), fmt::format("{:.1f}", before.max_abs_K), fmt::format("{:.1f}", after.max_abs_K)});
   };
-  for (const auto& [signal, error] : diagnosis.before_train) {
-    if (const auto after = diagnosis.after_train.find(signal); after != diagnosis.after_train.end()) {
-      add(signal, "training", error, diagnosis.refitted_train.at(signal), after->second);
-    }
+  for (const diagnosis::ErrorInRun& each : diagnosis.train_errors) {
+    add(each.signal, "training " + each.run, each.before, each.refitted, each.after);
   }
-  for (const diagnosis::HoldoutError& each : score.errors) {
+  for (const diagnosis::ErrorInRun& each : score.errors) {
     add(each.signal, "hold-out " + each.run, each.before, each.refitted, each.after);
   }
   return text + "</table>\n";

@@ -113,7 +113,7 @@ DiagnosisPicture residuals(const diagnosis::Diagnosis& diagnosis, const diagnosi
       {}};
   std::set<std::string> signals;
   std::ranges::copy(std::views::keys(diagnosis.before_train), std::inserter(signals, signals.end()));
-  std::ranges::transform(score.errors, std::inserter(signals, signals.end()), &diagnosis::HoldoutError::signal);
+  std::ranges::transform(score.errors, std::inserter(signals, signals.end()), &diagnosis::ErrorInRun::signal);
   for (const std::string& signal : signals) {
     report::ChartPanel panel{part_of(signal), "measured − model / K", {}, {}, {}};
     Axis axis;

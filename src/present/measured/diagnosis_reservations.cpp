@@ -14,7 +14,7 @@ namespace {
 /// Warns of the hold-out runs that the new file predicts worse than the original one or than the refitted one, and of single signals in
 /// other runs.
 std::string growth_in_holdout_runs(const diagnosis::HoldoutScore& score) {
-  using Error = diagnosis::HoldoutError;
+  using Error = diagnosis::ErrorInRun;
   const auto is_worse = [&](const std::string& run, estimation::ErrorOfSignal Error::*than) {
     return diagnosis::is_plainly_worse(diagnosis::rms_of_run_K(score, run, &Error::after), diagnosis::rms_of_run_K(score, run, than));
   };
@@ -67,7 +67,7 @@ std::string reservations(const diagnosis::Diagnosis& diagnosis, const diagnosis:
   std::string text = growth_in_holdout_runs(score) + growth_in_training_runs(diagnosis);
   double worst_K = 0.0;
   for (const calibration::PredictedRun& run : score.runs_after) {
-    worst_K = std::max(worst_K, diagnosis::rms_of_run_K(score, run.name, &diagnosis::HoldoutError::after));
+    worst_K = std::max(worst_K, diagnosis::rms_of_run_K(score, run.name, &diagnosis::ErrorInRun::after));
   }
   const double train_K = estimation::rms_K(diagnosis.after_train);
   if (worst_K > kElsewhere_ratio * train_K && worst_K > train_K + 10.0 * estimation::thresholds().matters_K) {

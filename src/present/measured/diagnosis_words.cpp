@@ -33,30 +33,17 @@ std::string error_in_words(std::string_view what, const std::string& signal, dou
                      base::significant(after_K, 2));
 }
 
-std::string errors_in_training_runs(const diagnosis::Diagnosis& diagnosis) {
-  std::string text;
-  for (const auto& [signal, error] : diagnosis.before_train) {
-    if (const auto after = diagnosis.after_train.find(signal); after != diagnosis.after_train.end()) {
-      const auto own = diagnosis.refitted_train.find(signal);
-      const bool states_own = !diagnosis.effects.empty() && own != diagnosis.refitted_train.end();
-      text += error_in_words(text.empty() ? "In the training runs, RMS error" : " RMS error", signal, error.rmse_K,
-                             states_own ? &own->second.rmse_K : nullptr, after->second.rmse_K);
-    }
-  }
-  return text;
-}
-
-std::size_t count_of_runs(const diagnosis::HoldoutScore& score) { return score.runs_after.size(); }
-
-/// Reports each signal in the run in which its error after the diagnosis is largest.
-std::string errors_in_holdout_runs(const diagnosis::Diagnosis& diagnosis, const diagnosis::HoldoutScore& score) {
+/// Reports each signal in the run in which its error after the diagnosis is largest. `kind`: "hold-out" or "training".
+std::string errors_in_runs(const std::vector<diagnosis::ErrorInRun>& errors, std::string_view kind, bool states_refitted) {
+  std::set<std::string> runs;
+  std::ranges::transform(errors, std::inserter(runs, runs.end()), &diagnosis::ErrorInRun::run);
   std::string text;
   std::string last_run;
-  for (const diagnosis::HoldoutError& each : diagnosis::worst_runs(score)) {
+  for (const diagnosis::ErrorInRun& each : diagnosis::worst_runs(errors)) {
     const std::string where =
-        count_of_runs(score) == 1 ? "the hold-out run" : fmt::format("{}, the worst of {} hold-out runs", each.run, count_of_runs(score));
+        runs.size() == 1 ? fmt::format("the {} run", kind) : fmt::format("{}, the worst of {} {} runs", each.run, runs.size(), kind);
     text += error_in_words(each.run == last_run ? " RMS error" : fmt::format("{}In {}, RMS error", text.empty() ? "" : " ", where),
-                           each.signal, each.before.rmse_K, diagnosis.effects.empty() ? nullptr : &each.refitted.rmse_K, each.after.rmse_K);
+                           each.signal, each.before.rmse_K, states_refitted ? &each.refitted.rmse_K : nullptr, each.after.rmse_K);
     last_run = each.run;
   }
   return text;
@@ -409,7 +396,8 @@ std::vector<std::string> diagnosis_words(const diagnosis::DiagnosisAnswer& answe
   if (diagnosis.selection.is_as_usual) {
     all.emplace_back("The file's values are kept: the model follows these runs as well as those that it was fitted to.");
   }
-  all.push_back((score.errors.empty() ? errors_in_training_runs(diagnosis) : errors_in_holdout_runs(diagnosis, score)) +
+  all.push_back((score.errors.empty() ? errors_in_runs(diagnosis.train_errors, "training", !diagnosis.effects.empty())
+                                      : errors_in_runs(score.errors, "hold-out", !diagnosis.effects.empty())) +
                 reservations(diagnosis, score));
   if (const std::string alone = file_alone_in_words(diagnosis, score); !alone.empty()) {
     all.push_back(alone);
