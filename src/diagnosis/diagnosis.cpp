@@ -86,17 +86,12 @@ class DiagnosisReport {
     for (const estimation::MeasuredRun& run : input_.train) {
       recordings[estimation::recording_of(run)].push_back(run);
     }
-    std::map<std::string, double> worst_K;
     for (const auto& [name, runs] : recordings) {
       const estimation::Errors given = estimation::open_loop_errors(input_.model, runs, {});
       const estimation::Errors refitted = estimation::open_loop_errors(out_.selection.own.model, runs, {});
       const estimation::Errors of_file = estimation::open_loop_errors(file, runs, {});
       for (const auto& [signal, error] : estimation::open_loop_errors(after().model, runs, {})) {
-        out_.train_errors.push_back({name, signal, given.at(signal), refitted.at(signal), error});
-        if (const auto [worst, is_first] = worst_K.emplace(signal, error.rmse_K); is_first || error.rmse_K > worst->second) {
-          worst->second = error.rmse_K;
-          out_.file_train[signal] = of_file.at(signal);
-        }
+        out_.train_errors.push_back({name, signal, given.at(signal), refitted.at(signal), error, of_file.at(signal)});
       }
     }
   }

@@ -104,8 +104,7 @@ struct Diagnosis {
   std::vector<Unexplained> unexplained;
   std::vector<ErrorInRun> train_errors;                          ///< errors in the training runs, per run and signal
   estimation::Errors before_train, after_train, refitted_train;  ///< errors over all training runs, for remarks
-  estimation::Errors file_train;              ///< errors of the written file in the runs of worst_runs(), without run deviations
-  std::vector<estimation::MeasuredRun> runs;  ///< training runs
+  std::vector<estimation::MeasuredRun> runs;                     ///< training runs
   std::vector<estimation::InnovationTests> tests_before, tests_after;
   std::vector<FluxTrace> flux;
   std::map<std::string, double> flux_rms_before_W, flux_rms_after_W;  ///< RMS of the unknown heat by node

@@ -15,6 +15,7 @@ struct ErrorInRun {
   estimation::ErrorOfSignal before;    ///< errors of the model or file that the user gave
   estimation::ErrorOfSignal refitted;  ///< errors with only its own parameters refitted to the training runs
   estimation::ErrorOfSignal after;     ///< errors with the effects that were found
+  estimation::ErrorOfSignal file;      ///< errors of the written file alone, without run deviations
 };
 
 /// Returns the errors of each signal in the run in which the error after the diagnosis is largest.

@@ -21,7 +21,7 @@ HoldoutScore score_holdout(const ScoredFiles& files, const std::vector<recording
         return estimation::ErrorOfSignal{runs[r].signals[s].rmse_K, runs[r].signals[s].max_abs_K};
       };
       score.errors.push_back({score.runs_after[r].name, score.runs_after[r].signals[s].signal, error_of(score.runs_before),
-                              error_of(score.runs_refitted), error_of(score.runs_after)});
+                              error_of(score.runs_refitted), error_of(score.runs_after), error_of(score.runs_after)});
     }
   }
   return score;

@@ -33,8 +33,8 @@ struct NamedLogs {
   base::CollectedFailures unread;    ///< failures of the logs that could not be read
 };
 
-/// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"). Several parts
-/// of one log have the part as a suffix ("run@0-60%"). Hold-out logs do not change the names of fitted logs. Logs that cannot be read are
+/// Reads the logs. Recordings whose files have the same name in different folders get the folder as a prefix ("monday/run"). The names
+/// of several parts of one log end with the part ("run@0-60%"). Hold-out logs do not change the names of fitted logs. Logs that cannot be read are
 /// in `unread`; the caller reports them with the problems of the other logs.
 NamedLogs read_usable_logs(const std::vector<std::string>& fitted, const std::vector<std::string>& held_out, const LogChoice& choice);
 

@@ -100,7 +100,7 @@ TEST(WordsOfDiagnosis, ErrorsOnHoldoutRunsAreComparedWithBothOtherFiles) {
     diagnosis::HoldoutScore score;
     score.runs_after.resize(1);
     score.runs_after.front().name = "match_4";
-    score.errors = {{"match_4", "winding_C", {before_K, before_K}, {refitted_K, refitted_K}, {after_K, after_K}}};
+    score.errors = {{"match_4", "winding_C", {before_K, before_K}, {refitted_K, refitted_K}, {after_K, after_K}, {after_K, after_K}}};
     diagnosis::Diagnosis diagnosis;
     diagnosis.before_train["winding_C"].rmse_K = before_K;
     diagnosis.after_train["winding_C"].rmse_K = std::min(before_K, after_K);
@@ -118,8 +118,8 @@ TEST(WordsOfDiagnosis, GrowthOfOneSignalIsReported) {
   diagnosis::HoldoutScore score;
   score.runs_after.resize(1);
   score.runs_after.front().name = "match_4";
-  score.errors = {{"match_4", "winding_C", {3.0, 3.0}, {2.0, 2.0}, {0.5, 0.5}},
-                  {"match_4", "stator_C", {1.0, 1.0}, {0.3, 0.3}, {0.5, 0.5}}};
+  score.errors = {{"match_4", "winding_C", {3.0, 3.0}, {2.0, 2.0}, {0.5, 0.5}, {0.5, 0.5}},
+                  {"match_4", "stator_C", {1.0, 1.0}, {0.3, 0.3}, {0.5, 0.5}, {0.5, 0.5}}};
   EXPECT_EQ(reservations({}, score),
             " The error of the stator alone grows in match_4, from 0.3 K with only the model's own parameters refitted to 0.5 K.");
   score.errors.back().before.rmse_K = 0.2;

@@ -172,10 +172,10 @@ Json diagnosis_json(const diagnosis::DiagnosisAnswer& answer, std::span<const re
   using File = estimation::ErrorOfSignal diagnosis::ErrorInRun::*;
   for (const auto& [key, file] : {std::pair<const char*, File>{"before", &diagnosis::ErrorInRun::before},
                                   {"refitted", &diagnosis::ErrorInRun::refitted},
-                                  {"after", &diagnosis::ErrorInRun::after}}) {
+                                  {"after", &diagnosis::ErrorInRun::after},
+                                  {"model_file", &diagnosis::ErrorInRun::file}}) {
     json[key] = {{"train", errors_json(train, file)}, {"holdout", errors_json(holdout, file)}};
   }
-  json["model_file"] = {{"train", errors_json(diagnosis.file_train)}, {"holdout", errors_json(holdout, &diagnosis::ErrorInRun::after)}};
   json["train_run"] = runs_of_signals(train);
   json["holdout_run"] = runs_of_signals(holdout);
   json["forecast_band"] = nullptr;

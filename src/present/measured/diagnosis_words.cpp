@@ -236,10 +236,10 @@ std::string file_alone_in_words(const diagnosis::Diagnosis& diagnosis, const dia
     return whose;  // the errors in the hold-out runs are those of the file
   }
   std::vector<std::string> errors;
-  for (const auto& [signal, error] : diagnosis.file_train) {
-    errors.push_back(fmt::format("{} {} K", part_of(signal), base::significant(error.rmse_K, 2)));
+  for (const diagnosis::ErrorInRun& each : diagnosis::worst_runs(diagnosis.train_errors)) {
+    errors.push_back(fmt::format("{} {} K", part_of(each.signal), base::significant(each.file.rmse_K, 2)));
   }
-  return fmt::format("{} RMS error of the file alone in the training runs: {}.", whose, fmt::join(errors, ", "));
+  return fmt::format("{} RMS error of the file alone in the worst training runs: {}.", whose, fmt::join(errors, ", "));
 }
 
 /// Reports the band of forecasts with the written file.
