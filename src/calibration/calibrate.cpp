@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "base/copper.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
+#include "calibration/contradicting_run.h"
 #include "calibration/effect_signals.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
@@ -116,6 +118,7 @@ class Calibrating {
     report_grown_errors(false, pooled_error_);
     refuse_where_nothing_was_learned();
     report_poor_fit();
+    report_contradicting_run();
     score_holdout(motor);
     return std::move(all_);
   }
@@ -350,8 +353,9 @@ class Calibrating {
       parameter.high = parameter.value * std::exp(above);
       // Without heat in the runs, values in watts are those of the file, however well the data determine the time constants.
       const bool has_watts = each.origin == base::Origin::measured || !depends_on_heat(motor, each) || is_heated(motor, all_.runs);
-      parameter.is_learned = has_watts && is_learned(sd, each);
-      parameter.is_identifiable = has_watts && is_identifiable(sd, each);
+      const double widest_sd = std::max({sd, below / estimation::kInterval_sd, above / estimation::kInterval_sd});
+      parameter.is_learned = has_watts && is_learned(widest_sd, each);
+      parameter.is_identifiable = has_watts && is_identifiable(widest_sd, each);
       all_.parameters.push_back(std::move(parameter));
     }
     Eigen::MatrixXd exponents(of_file, model.free_count());
@@ -374,25 +378,15 @@ class Calibrating {
                          }));
   }
 
-  /// Returns the signals that the fitted model does not follow. A model with values that its file excludes must follow more closely.
-  [[nodiscard]] std::vector<PoorFit> not_followed(std::span<const ErrorBeforeAfter> errors) const {
-    constexpr double kFar_K = 20.0;
-    const double far_share = has_finding<LargeChange>(all_.findings) ? 0.0 : 0.4;
-    std::vector<PoorFit> found;
-    for (const ErrorBeforeAfter& each : errors) {
-      const double moves_K = estimation::standard_deviation_K(all_.runs, each.signal);
-      if (each.after.rmse_K > moves_K || each.after.rmse_K > std::max(kFar_K, far_share * moves_K)) {
-        found.push_back({each.signal, each.after.rmse_K, moves_K});
-      }
-    }
-    return found;
-  }
-
-  /// Refuses if neither fit follows the runs: its parameters would mean nothing.
+  /// Refuses if neither fit follows the runs. A model with values that its file excludes must follow more closely.
   void refuse_where_nothing_is_explained() const {
-    std::vector<PoorFit> signals = not_followed(pooled_error_);
-    if (!signals.empty() && !not_followed(innovations_error_).empty()) {
-      throw NothingFollows(std::move(signals), all_.motor_model.nuisances.empty());
+    const auto lost = [&](std::span<const ErrorBeforeAfter> errors) {
+      std::map<std::string, double> rmse_K;
+      std::ranges::for_each(errors, [&](const ErrorBeforeAfter& each) { rmse_K[each.signal] = each.after.rmse_K; });
+      return not_followed(rmse_K, all_.runs, has_finding<LargeChange>(all_.findings) ? 0.0 : kFarShare);
+    };
+    if (std::vector<PoorFit> signals = lost(pooled_error_); !signals.empty() && !lost(innovations_error_).empty()) {
+      throw NothingFollows(NothingFollows::Tried::parameters, std::move(signals), all_.motor_model.nuisances.empty());
     }
   }
 
@@ -405,6 +399,14 @@ class Calibrating {
         all_.findings.push_back(PoorFit{each.signal, each.after.rmse_K, moves_K});
       }
     }
+  }
+
+  void report_contradicting_run() {
+    base::in_parallel(1, options_.fit.threads, [&](std::size_t) {
+      if (const std::optional<ContradictingRun> odd = contradicting_run(all_.motor_model.model, all_.fit, all_.runs)) {
+        all_.findings.emplace_back(*odd);
+      }
+    });
   }
 
   std::span<const recording::Recording> recordings_;
@@ -430,11 +432,6 @@ std::vector<std::string> names_of(std::span<const estimation::MeasuredRun> runs)
 }
 
 }  // namespace
-
-NothingFollows::NothingFollows(std::vector<PoorFit> signals, bool has_speed)
-    : base::Failure(base::ExitCode::cannot_answer, "no parameter values make the model follow these logs"),
-      signals_(std::move(signals)),
-      has_speed_(has_speed) {}
 
 Calibration calibrate(const motor::Motor& motor, std::span<const recording::Recording> recordings,
                       std::span<const recording::Recording> holdout, const CalibrationOptions& options) {

@@ -12,6 +12,7 @@
 #include "base/job_progress.h"
 #include "calibration/error_before_after.h"
 #include "calibration/findings.h"
+#include "calibration/followed_signals.h"
 #include "calibration/forecast/forecast.h"
 #include "calibration/forecast/prediction.h"
 #include "calibration/motor_model.h"
@@ -99,19 +100,6 @@ class NothingLearned : public base::Failure {
  private:
   std::vector<OpenDirection> open_;
   bool has_heat_input_;
-};
-
-/// No parameter values make the model follow the logs (cannot_answer).
-class NothingFollows : public base::Failure {
- public:
-  NothingFollows(std::vector<PoorFit> signals, bool has_speed);
-  [[nodiscard]] const std::vector<PoorFit>& signals() const { return signals_; }
-  /// False if the loss at speed is unknown, because no log has the speed.
-  [[nodiscard]] bool has_speed() const { return has_speed_; }
-
- private:
-  std::vector<PoorFit> signals_;
-  bool has_speed_;
 };
 
 struct Calibration {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/assumptions.h"
+#include "calibration/contradicting_run.h"
 #include "calibration/forecast/forecast.h"
 
 namespace heatsoak::calibration {
@@ -91,9 +92,9 @@ struct ExtendedForForecasts {
 };
 using CalibrationFinding =
     std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
-                 HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, UnidentifiableAreWritten, TooFewPieces,
-                 ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed,
-                 BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
+                 HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, ContradictingRun, UnidentifiableAreWritten,
+                 TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue,
+                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
 
 /// Returns whether a finding of this type exists.
 template <class Finding>

@@ -11,6 +11,8 @@ namespace {
 
 /// Half of the 95 % point of χ² with one degree of freedom.
 constexpr double kDrop = 1.92;
+/// Largest rise of the cost that the search distinguishes. A simulation that fails has an infinite one, which no interpolation can use.
+constexpr double kMostRise_nats = 20.0;
 
 }  // namespace
 
@@ -29,13 +31,14 @@ std::pair<double, double> profile_interval(const estimation::Model& model, const
     return -estimation::try_posterior_of(std::move(there), runs, fit.start_C, options).evidence_nats;
   };
   const double least = cost(0.0);
+  const auto rise = [&](double moved) { return std::min(cost(moved) - least, kMostRise_nats); };
   const auto end = [&](double sign) {
     const estimation::FreeParameter& which = model.free[static_cast<std::size_t>(parameter)];
     const double bound = model.theta_of(parameter, sign > 0.0 ? which.high : which.low);
     const double reach = std::abs(bound - fit.theta[parameter]);
     double inner = 0.0;
     double outer = std::min(2.0 * sd, reach);
-    while (cost(sign * outer) - least < kDrop) {
+    while (rise(sign * outer) < kDrop) {
       if (outer >= reach) {
         return bound;
       }
@@ -43,7 +46,7 @@ std::pair<double, double> profile_interval(const estimation::Model& model, const
       outer = std::min(1.6 * outer, reach);
     }
     std::uintmax_t most = 8;
-    const auto excess = [&](double moved) { return cost(sign * moved) - least - kDrop; };
+    const auto excess = [&](double moved) { return rise(sign * moved) - kDrop; };
     const auto tolerance = [&](double a, double b) { return std::abs(a - b) < 0.02 * sd; };
     const auto [a, b] = boost::math::tools::toms748_solve(excess, inner, outer, tolerance, most);
     return fit.theta[parameter] + sign * 0.5 * (a + b);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -9,12 +10,13 @@
 
 #include "base/collected_failures.h"
 #include "base/diagnostic.h"
+#include "calibration/followed_signals.h"
 #include "calibration/forecast/forecast.h"
+#include "calibration/unlogged_speed.h"
 #include "diagnosis/coverage.h"
 #include "diagnosis/left_out_band.h"
 #include "estimation/log_columns.h"
 #include "estimation/log_rows.h"
-#include "estimation/open_loop.h"
 #include "estimation/turning_rows.h"
 
 namespace heatsoak::diagnosis {
@@ -48,14 +50,13 @@ RunsOfLogs runs_of(const std::vector<recording::Recording>& recordings, const es
   return all;
 }
 
-/// Throws if not even the extended model follows the runs: effects found in them would be meaningless.
+/// Throws if not even the extended model follows the runs.
 void refuse_where_nothing_follows(const Diagnosis& diagnosis, const DiagnosisInput& input) {
-  constexpr double kFar_K = 20.0;
-  for (const auto& [signal, error] : diagnosis.after_train) {
-    const double moves_K = estimation::standard_deviation_K(input.train, signal);
-    if (error.rmse_K > std::max(kFar_K, moves_K)) {
-      throw NoEffectFollows({signal, error.rmse_K, moves_K});
-    }
+  std::map<std::string, double> rmse_K;
+  std::ranges::for_each(diagnosis.after_train, [&](const auto& each) { rmse_K[each.first] = each.second.rmse_K; });
+  if (std::vector<calibration::PoorFit> signals = calibration::not_followed(rmse_K, input.train); !signals.empty()) {
+    throw calibration::NothingFollows(calibration::NothingFollows::Tried::effects, std::move(signals),
+                                      std::ranges::none_of(input.train, calibration::turns_unseen));
   }
 }
 
@@ -107,8 +108,8 @@ BandSize size_of_band(const motor::Motor& motor, const std::vector<recording::Re
 }
 
 /// Diagnoses the motor from the recordings `fitted`. Stops and returns the recording that contradicts the others, if there is one.
-std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, const std::vector<recording::Recording>& fitted,
-                                                    const base::JobProgress& progress, DiagnosisAnswer& answer) {
+std::optional<calibration::ContradictingRun> diagnose_recordings(const DiagnosisJob& job, const std::vector<recording::Recording>& fitted,
+                                                                 const base::JobProgress& progress, DiagnosisAnswer& answer) {
   const std::vector<recording::Recording>& held_out = job.logs.held_out;
   const recording::LogChoice& choice = job.logs.choice;
   std::vector<DiagnosisFinding>& findings = answer.findings;
@@ -149,7 +150,8 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
   progress.expect(last);
   progress.begin(kContradiction);
   const attribution::Selection& selection = answer.diagnosis.selection;
-  if (std::optional<ContradictingRun> found = contradicting_run(selection.after, input.train, selection.weights)) {
+  if (std::optional<calibration::ContradictingRun> found =
+          calibration::contradicting_run(selection.after, input.train, selection.weights)) {
     return found;
   }
   refuse_where_nothing_follows(answer.diagnosis, input);
@@ -178,9 +180,6 @@ std::optional<ContradictingRun> diagnose_recordings(const DiagnosisJob& job, con
 
 }  // namespace
 
-NoEffectFollows::NoEffectFollows(calibration::PoorFit worst)
-    : base::Failure(base::ExitCode::cannot_answer, "no effect makes the model follow these logs"), worst_(std::move(worst)) {}
-
 DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& progress) {
   const calibration::Admission admission = calibration::admit(job.motor, job.logs);
   std::vector<recording::Recording> fitted = job.logs.fitted;
@@ -190,8 +189,9 @@ DiagnosisAnswer run_diagnosis(const DiagnosisJob& job, const base::JobProgress& 
   }
   DiagnosisAnswer answer;
   // Parameters between those of two mountings would hold for neither.
-  while (const std::optional<ContradictingRun> odd = diagnose_recordings(job, fitted, progress, answer)) {
+  while (const std::optional<calibration::ContradictingRun> odd = diagnose_recordings(job, fitted, progress, answer)) {
     first.emplace_back(*odd);
+    std::get<calibration::ContradictingRun>(first.back()).is_left_out = true;
     if (std::erase_if(fitted, [&](const recording::Recording& each) { return each.name == odd->run; }) == 0) {
       throw std::logic_error("there is no recording " + odd->run);
     }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "calibration/contradicting_run.h"
 #include "calibration/findings.h"
-#include "diagnosis/contradicting_run.h"
 #include "estimation/run_deviation.h"
 
 namespace heatsoak::diagnosis {
@@ -44,7 +44,7 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, calibration::SignalsMissing, ConditionNotApplied,
+using DiagnosisFinding = std::variant<ExtensionsMayImitate, calibration::ContradictingRun, calibration::SignalsMissing, ConditionNotApplied,
                                       ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
                                       ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue,
                                       calibration::HeatInputLacking, calibration::ShaftPowerUnknown, estimation::RunNote>;
@@ -53,16 +53,6 @@ using DiagnosisFinding = std::variant<ExtensionsMayImitate, ContradictingRun, ca
 class NothingHeatsModel : public base::Failure {
  public:
   explicit NothingHeatsModel(const std::string& motor);
-};
-
-/// Thrown if not even the extended model follows the runs: effects found in them would be meaningless.
-class NoEffectFollows : public base::Failure {
- public:
-  explicit NoEffectFollows(calibration::PoorFit worst);
-  [[nodiscard]] const calibration::PoorFit& worst() const { return worst_; }
-
- private:
-  calibration::PoorFit worst_;
 };
 
 /// Signal that is outside the range of the training runs for more than a quarter of the time of the hold-out runs.

@@ -81,6 +81,14 @@ struct ConstantSensor {
   std::string moving;  ///< the other temperature
   double moves_K = 0.0;
 };
+/// A heat input is constant while the winding heats up and cools down again and again.
+struct ConstantHeatInput {
+  std::string channel;
+  std::string unit;
+  double value = 0.0;
+  double by_K = 0.0;  ///< smallest counted change of the winding's temperature above the stator
+  int count = 0;      ///< number of such changes
+};
 /// A heat input often has exactly its largest or smallest value.
 struct StaysAtLimit {
   std::string channel;
@@ -142,8 +150,8 @@ struct MotorCoolsInFahrenheit {
 using Suspicion =
     std::variant<CurrentTooLarge, PowerDiffersFromBus, PowerOppositeToBus, TorqueOppositeToCurrent, SpeedTooLarge, ShaftPowerExceedsInput,
                  AngleSpansDegrees, WheelRowsFarApart, ModulationAboveOne, VoltageTooLarge, LastsForDays, FallsTooFast, RespondsEarly,
-                 ConstantSensor, StaysAtLimit, AmbientAboveMotor, FallsWhileHeated, StatorRespondsFaster, StatorHotterAtRest,
-                 StatorWarmsFirst, StartsInOtherScale, MotorStartsInFahrenheit, MotorCoolsInFahrenheit>;
+                 ConstantSensor, ConstantHeatInput, StaysAtLimit, AmbientAboveMotor, FallsWhileHeated, StatorRespondsFaster,
+                 StatorHotterAtRest, StatorWarmsFirst, StartsInOtherScale, MotorStartsInFahrenheit, MotorCoolsInFahrenheit>;
 
 /// Returns whether both are of one kind and about the same channels. Their numbers may differ: a log and a part of it give other numbers.
 bool have_one_subject(const Suspicion& a, const Suspicion& b);

@@ -35,6 +35,7 @@ class Suspector {
     clock();
     std::vector<Suspicion> blocking_for_wheels(found_.begin() + of_motors, found_.end());
     early_answers();
+    constant_heat_inputs();
     std::vector<Suspicion> blocking = found_;
     const auto of_all = static_cast<std::ptrdiff_t>(found_.size());
     angles();
@@ -235,6 +236,51 @@ class Suspector {
         found_.emplace_back(ConstantSensor{constant.quantity.key, range->low, moving->quantity.key, swing(*moving)});
       }
     }
+  }
+
+  /// Reports a current or input power that is constant although the winding is heated and cooled by turns. Iron loss varies at constant
+  /// current, but does not make the winding hotter than the stator. One rise and one fall do not count: a motor that is disconnected has
+  /// both.
+  void constant_heat_inputs() {
+    constexpr double kMoves_K = 10.0;
+    constexpr int kFewestMoves = 4;
+    constexpr std::size_t kFewestSamples = 100;
+    const Channel* const winding = recording_.find("winding_C");
+    const Channel* const stator = recording_.find("stator_C");
+    const int moves = winding != nullptr && stator != nullptr ? rises_and_falls(*winding, *stator, kMoves_K) : 0;
+    for (const Signal signal : {Signal::current, Signal::input_power}) {
+      const ChannelQuality* const range = quality(std::string(column_of(signal)));
+      if (moves >= kFewestMoves && range != nullptr && range->samples >= kFewestSamples && range->is_constant()) {
+        found_.emplace_back(ConstantHeatInput{range->quantity.key, range->quantity.unit, range->low, kMoves_K, moves});
+      }
+    }
+  }
+  /// Counts the changes of at least `by_K` between turning points of the positive difference of two temperatures.
+  [[nodiscard]] static int rises_and_falls(const Channel& hotter, const Channel& than, double by_K) {
+    int count = 0;
+    int direction = 0;
+    std::vector<double> last_K;  // a median of five rows hides single outliers
+    double turn_K = 0.0;
+    for (std::size_t row = 0; row < hotter.values.size(); ++row) {
+      if (const double difference_K = hotter.values[row] - than.values[row]; !std::isnan(difference_K)) {
+        last_K.push_back(std::max(0.0, difference_K));
+      }
+      constexpr std::size_t kRows = 5;
+      if (last_K.size() < kRows) {
+        continue;
+      }
+      const double now_K = middle_of(last_K);
+      last_K.clear();
+      const int towards = now_K > turn_K ? 1 : -1;
+      if (towards != direction && std::abs(now_K - turn_K) >= by_K) {
+        direction = towards;
+        turn_K = now_K;
+        ++count;
+      } else if (towards == direction) {
+        turn_K = now_K;
+      }
+    }
+    return count;
   }
 
   /// Reports heat inputs that often have their extreme value. For a temperature that would be saturation; for an input it is often valid.

@@ -1,5 +1,5 @@
 // A sensor that was moved between the runs of one motor is reported with the run. Runs that agree are in unchanged_motor_test.cpp.
-#include "diagnosis/contradicting_run.h"
+#include "calibration/contradicting_run.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "calibration/calibrate.h"
 #include "diagnosis/diagnosis_job.h"
 #include "examination.h"
 #include "motor/write_motor.h"
@@ -63,10 +64,37 @@ TEST(ContradictingRun, IsNoneWithAnEffectOfItsOwn) {
     std::ranges::transform(runs.training, std::back_inserter(logs.fitted), &TrueRun::log);
     const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({motor_of(runs), logs});
     claim.expect(
-        std::ranges::none_of(answer.findings, [](const auto& each) { return std::holds_alternative<diagnosis::ContradictingRun>(each); }),
+        std::ranges::none_of(answer.findings, [](const auto& each) { return std::holds_alternative<calibration::ContradictingRun>(each); }),
         "the run is left out");
     claim.expect(std::ranges::any_of(answer.diagnosis.effects, [](const auto& each) { return !each.condition.empty(); }),
                  account(answer.diagnosis));
+  });
+  EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
+}
+
+// A calibration keeps the run: another effect in it may be the cause, which only a diagnosis searches for.
+TEST(ContradictingRun, IsReportedByACalibration) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    Runs runs = record(one);
+    const auto reported = [&] {
+      std::vector<recording::Recording> logs;
+      std::ranges::transform(runs.training, std::back_inserter(logs), &TrueRun::log);
+      calibration::CalibrationOptions options;
+      options.fit.threads = 1;
+      std::vector<std::string> found;
+      for (const calibration::CalibrationFinding& each : calibration::calibrate(motor_of(runs), logs, {}, options).findings) {
+        if (const auto* const odd = std::get_if<calibration::ContradictingRun>(&each)) {
+          found.push_back(odd->run);
+        }
+      }
+      return found;
+    };
+    const std::vector<std::string> before = reported();
+    move_sensor(runs.training[kMovedIn].log);
+    const std::vector<std::string> now = reported();
+    claim.expect(before.empty() && now == std::vector<std::string>{"run2"}, fmt::format("before {}, now {}", before.size(), now.size()));
   });
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
@@ -91,7 +119,7 @@ TEST(ContradictingRun, IsLeftOutOfTheFit) {
   const diagnosis::DiagnosisAnswer answer = answer_to(true);
   EXPECT_EQ(motor::to_toml(answer.motor), others);
   ASSERT_FALSE(answer.findings.empty());
-  const auto* const odd = std::get_if<diagnosis::ContradictingRun>(&answer.findings.front());
+  const auto* const odd = std::get_if<calibration::ContradictingRun>(&answer.findings.front());
   ASSERT_NE(odd, nullptr);
   EXPECT_EQ(odd->run, "run2");
 }

@@ -202,10 +202,10 @@ std::vector<estimation::MeasuredRun> holdout(const Runs& runs, bool is_speed_lin
   return is_speed_linear ? estimation::turning_within_rows(std::move(all)) : all;
 }
 
-std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection) {
+std::optional<calibration::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection) {
   std::vector<estimation::MeasuredRun> train = input.train;
   estimation::set_columns(train, selection.after.model.columns);
-  return diagnosis::contradicting_run(selection.after, train, selection.weights);
+  return calibration::contradicting_run(selection.after, train, selection.weights);
 }
 
 Answer examine(const Case& sealed) {

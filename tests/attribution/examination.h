@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/contradicting_run.h"
+#include "calibration/contradicting_run.h"
 #include "diagnosis/diagnosis.h"
 #include "errors_of_models.h"
 #include "estimation/fit.h"
@@ -64,7 +64,7 @@ diagnosis::DiagnosisInput question(const Case& sealed, const Runs& runs);
 std::vector<estimation::MeasuredRun> holdout(const Runs& runs, bool is_speed_linear = false);
 
 /// Returns the run that contradicts the others, after a diagnosis.
-std::optional<diagnosis::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection);
+std::optional<calibration::ContradictingRun> contradiction(const diagnosis::DiagnosisInput& input, const Selection& selection);
 
 struct Answer {
   diagnosis::Diagnosis diagnosis;

@@ -90,6 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
                            "in milliamperes"},
                     BadLog{"SmallMilliamps", each_cell(4, [](double current_A) { return std::to_string(30.0 * current_A); }), 2,
                            "is it in milliamperes"},
+                    BadLog{"ConstantCurrent", each_cell(4, [](double) { return "3"; }), 2, "current_A is constant, 3 A, while winding_C"},
                     BadLog{"Minutes", time_in(60.0), 2, "is the time in minutes"},
                     BadLog{"Hours", time_in(3600.0), 2, "is the time in hours"},
                     BadLog{"SwappedSensors",
@@ -226,6 +227,20 @@ TEST(Calibrate, CurrentsThatNoMotorSurvivesAreNoAnswer) {
   const ProgramRun found = run({"calibrate", "--motor", kMotor, "log.csv", "--out", "model.toml"}, in(folder.path()));
   EXPECT_EQ(found.exit_code, 3) << found.err;
   EXPECT_THAT(found.err, HasSubstr("check the units of the heat inputs"));
+}
+
+/// The fit reaches parameters beyond which the simulation diverges. The ends of their intervals must be numbers all the same.
+TEST(Calibrate, IntervalsEndWhereTheSimulationDiverges) {
+  const TemporaryFolder folder;
+  Words command{"calibrate", "--motor", kMotor, "--out", "model.toml", "--as-is"};
+  for (const char* name : {"match_1.csv", "match_2.csv", "match_3.csv"}) {
+    write(folder.path() / name, damaged_log(each_cell(4, [](double) { return "3"; }), name));
+    command.emplace_back(name);
+  }
+  const ProgramRun found = run(command, in(folder.path()));
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(found.out.find("nan"), std::string::npos) << found.out;
+  EXPECT_EQ(content_of(folder.path() / "model.toml").find("nan"), std::string::npos);
 }
 
 TEST(Calibrate, WhatIsLeftOutIsSaidWithItsLines) {

@@ -222,7 +222,7 @@ TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
       folder, "bench.csv", [](int line, std::vector<std::string>& cells) { cells[kCurrent] = line > 0 ? "0" : cells[kCurrent]; });
   const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", file, "--as-is", "--out", "found"}, in(folder));
   EXPECT_EQ(done.exit_code, 3) << done.out;
-  EXPECT_THAT(done.err, HasSubstr("no effect makes the model follow these logs: stator_C"));
+  EXPECT_THAT(done.err, HasSubstr("no effect makes the model follow these logs\n  stator_C"));
   EXPECT_FALSE(fs::exists(folder.path() / "found"));
 }
 

@@ -55,7 +55,7 @@ TEST(WordsOfDiagnosis, Findings) {
   using namespace diagnosis;
   const std::vector<std::pair<DiagnosisFinding, Severity>> severities{
       {ExtensionsMayImitate{{"contact_law"}}, Severity::warning},
-      {ContradictingRun{}, Severity::warning},
+      {calibration::ContradictingRun{}, Severity::warning},
       {calibration::SignalsMissing{}, Severity::note},
       {IntervalsOfDataSheet{}, Severity::note},
       {calibration::RowsTurn{}, Severity::note},

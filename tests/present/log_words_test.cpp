@@ -64,6 +64,9 @@ TEST(WordsOfLogs, Suspicions) {
       {ConstantSensor{"winding_C", 25.0, "stator_C", 31.2},
        "winding_C is constant, 25 °C, while stator_C changes by 31.2 K: is its sensor connected? If not, leave its column out of a mapping "
        "(--map)"},
+      {ConstantHeatInput{"current_A", "A", 3.0, 10.0, 9},
+       "current_A is constant, 3 A, while winding_C rises and falls 9 times by 10 K or more above stator_C: is its sensor connected? If "
+       "not, leave its column out of a mapping (--map)"},
       {StaysAtLimit{"current_A", "A", 3.0, 250, 1000},
        "current_A stays at exactly 3 A in 25 % of its rows: is the sensor saturated? If so, state saturates_high or saturates_low in a "
        "mapping (--map)"},

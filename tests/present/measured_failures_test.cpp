@@ -55,9 +55,6 @@ TEST(WordsOfFailures, OfRunsAndDiagnoses) {
   EXPECT_EQ(heat.code(), base::ExitCode::bad_input);
   EXPECT_EQ(heat.message(),
             "no log has a heat input for ecx; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
-  EXPECT_THAT(in_words(diagnosis::NoEffectFollows({"stator_C", 31.26, 8.04})).message(),
-              HasSubstr("no effect makes the model follow these logs: stator_C has an error of 31 K rms, more than its variation (standard "
-                        "deviation 8 K)\n  check for another motor"));
 }
 
 TEST(WordsOfFailures, OfRunsThatCountTwiceOrCannotBeSimulated) {
@@ -91,14 +88,19 @@ TEST(WordsOfFailures, NothingLearned) {
 }
 
 TEST(WordsOfFailures, NothingFollows) {
+  constexpr auto kParameters = calibration::NothingFollows::Tried::parameters;
   EXPECT_EQ(
-      told(calibration::NothingFollows({{"winding_C", 30.0, 20.0}, {"stator_C", 30.0, 40.0}}, false)).message(),
+      told(calibration::NothingFollows(kParameters, {{"winding_C", 30.0, 20.0}, {"stator_C", 30.0, 40.0}}, false)).message(),
       "no parameter values make the model follow these logs\n  winding_C has an error of 30 K rms, more than its variation (standard "
-      "deviation 20 K)\n  stator_C has an error of 30 K rms, close to its variation (standard deviation 40 K)\n  no log has the speed "
+      "deviation 20 K)\n  stator_C has an error of 30 K rms, close to its variation (standard deviation 40 K)\n  a log lacks the speed "
       "(speed_rad_per_s), so the loss at speed is unknown\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, "
       "milliamperes), a misplaced sensor, or heat that no column contains; `heatsoak log inspect` shows each channel");
-  EXPECT_THAT(told(calibration::NothingFollows({{"winding_C", 30.0, 20.0}}, true)).message(),
-              testing::Not(HasSubstr("no log has the speed")));
+  EXPECT_THAT(told(calibration::NothingFollows(kParameters, {{"winding_C", 30.0, 20.0}}, true)).message(),
+              testing::Not(HasSubstr("a log lacks the speed")));
+  EXPECT_THAT(
+      told(calibration::NothingFollows(calibration::NothingFollows::Tried::effects, {{"stator_C", 31.26, 8.04}}, true)).message(),
+      HasSubstr("no effect makes the model follow these logs\n  stator_C has an error of 31 K rms, more than its variation (standard "
+                "deviation 8 K)\n  check for another motor"));
 }
 
 TEST(WordsOfFailures, FindingsOfFriction) {

@@ -197,6 +197,8 @@ INSTANTIATE_TEST_SUITE_P(Synthetic, FaultyLog,
                                                VariantWith<ConstantSensor>(AllOf(Field(&ConstantSensor::channel, "winding_C"),
                                                                                  Field(&ConstantSensor::value_C, 25.0),
                                                                                  Field(&ConstantSensor::moving, "stator_C")))},
+                                         Fault{"constant_current", [](int, auto& cells) { cells[current] = 3.0; },
+                                               VariantWith<ConstantHeatInput>(Field(&ConstantHeatInput::channel, "current_A"))},
                                          Fault{"microseconds", [](int, auto& cells) { cells[time] *= 1e6; },
                                                VariantWith<LastsForDays>(Field(&LastsForDays::suspected, TimeUnit::microseconds))},
                                          Fault{"kelvin", [](int, auto& cells) { cells[stator] += 273.15; },
@@ -320,6 +322,24 @@ TEST(Suspicions, NoneWhereOneSensorStartsWarm) {
                     .quality.suspicions,
                 IsEmpty());
   }
+}
+
+/// A constant current that no sensor measures must not enter a fit.
+TEST(Suspicions, ConstantCurrentBesideAWindingThatRisesAndFallsPreventsAFit) {
+  const Read result = read_text(changed({}, [](int, std::vector<double>& cells) { cells[current] = 0.0; }));
+  EXPECT_THAT(result.quality.blocking, ElementsAre(VariantWith<ConstantHeatInput>(Field(&ConstantHeatInput::value, 0.0))));
+}
+
+/// A warm-up with a commanded current, after which the motor is disconnected, and single wrong samples of the winding.
+TEST(Suspicions, NoneAtAConstantCurrentWithOneRiseAndOneFall) {
+  SyntheticLog log;
+  log.current_A = [](double time_s) { return time_s < 900.0 ? 6.0 : 0.0; };
+  EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, log.temperatures_C(),
+                               [](double winding_C, double stator_C, std::size_t row) {
+                                 return fmt::format("{:.3f},{:.3f},22,6", winding_C + (row % 200 == 100 ? 40.0 : 0.0), stator_C);
+                               }))
+                  .quality.blocking,
+              IsEmpty());
 }
 
 /// The motor starts 15 K colder than its surrounding air.

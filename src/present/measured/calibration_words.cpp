@@ -101,6 +101,18 @@ std::string say(const calibration::UnidentifiableAreWritten& /*of*/) {
          "measurements";
 }
 
+std::string say(const calibration::ContradictingRun& run) {
+  return fmt::format(
+      "{0}{1}: with parameters that follow the others to {2} K RMS, its {3} is wrong by {4} K, although {0} alone can be followed to {5} "
+      "K. "
+      "Check whether a sensor was moved or the mounting was changed before {0}{6}",
+      run.run,
+      run.is_left_out ? " is left out, because it contradicts the other runs"
+                      : " contradicts the other runs, so the written values may hold for none of them",
+      base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2), base::significant(run.alone_K, 2),
+      run.is_left_out ? "" : fmt::format("; calibrate without it, or let `heatsoak diagnose` search for an effect of {}", run.run));
+}
+
 std::string say(const calibration::TooFewPieces& of) {
   const std::string parts = of.are_whole_runs
                                 ? fmt::format("run{}", of.pieces == 1 ? "" : "s")
@@ -412,8 +424,8 @@ Severity severity_of(const calibration::CalibrationFinding& finding) {
   if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
     return severity_of(*note);
   }
-  using Warnings =
-      Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, HeatInputLacking, ShaftPowerUnknown>;
+  using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, ContradictingRun, HeatInputLacking,
+                         ShaftPowerUnknown>;
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
                       ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;

@@ -24,15 +24,6 @@ std::string say(const diagnosis::ExtensionsMayImitate& of) {
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
 }
 
-std::string say(const diagnosis::ContradictingRun& run) {
-  return fmt::format(
-      "{0} is left out, because it contradicts the other runs: with parameters that follow the others to {1} K RMS, its {2} is wrong by "
-      "{3} "
-      "K, although {0} alone can be followed to {4} K. Check whether a sensor was moved or the mounting was changed before {0}",
-      run.run, base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2),
-      base::significant(run.alone_K, 2));
-}
-
 std::string say(const diagnosis::ConditionNotApplied& of) {
   return fmt::format(
       "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
@@ -88,8 +79,8 @@ Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   if (const auto* const note = std::get_if<estimation::RunNote>(&finding)) {
     return severity_of(*note);
   }
-  using Warnings = Kinds<ExtensionsMayImitate, ContradictingRun, calibration::OutsideDeclaredRange, calibration::HeatInputLacking,
-                         calibration::ShaftPowerUnknown>;
+  using Warnings = Kinds<ExtensionsMayImitate, calibration::ContradictingRun, calibration::OutsideDeclaredRange,
+                         calibration::HeatInputLacking, calibration::ShaftPowerUnknown>;
   using Notes =
       Kinds<calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
             TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;

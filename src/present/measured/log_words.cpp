@@ -114,6 +114,13 @@ std::string say(const recording::ConstantSensor& of) {
       of.channel, significant(of.value_C, 4), of.moving, significant(of.moves_K, 3));
 }
 
+std::string say(const recording::ConstantHeatInput& of) {
+  return fmt::format(
+      "{} is constant, {} {}, while winding_C rises and falls {} times by {} K or more above stator_C: is its sensor connected? If not, "
+      "leave its column out of a mapping (--map)",
+      of.channel, significant(of.value, 3), base::unit_for_display(of.unit), of.count, significant(of.by_K, 2));
+}
+
 std::string say(const recording::StaysAtLimit& of) {
   return fmt::format(
       "{} stays at exactly {} {} in {:.0f} % of its rows: is the sensor saturated? If so, state saturates_high or saturates_low in a "

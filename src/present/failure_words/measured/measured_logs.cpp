@@ -134,7 +134,7 @@ base::Failure worded(const calibration::NothingFollows& failure) {
                            base::significant(each.varies_K, 2));
   }
   if (!failure.has_speed()) {
-    message += "\n  no log has the speed (speed_rad_per_s), so the loss at speed is unknown";
+    message += "\n  a log lacks the speed (speed_rad_per_s), so the loss at speed is unknown";
   }
   return with_message(failure, message +
                                    "\n  check for another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes), a misplaced "
@@ -149,15 +149,6 @@ base::Failure worded(const estimation::NoUsableInterval& failure) {
 base::Failure worded(const diagnosis::NothingHeatsModel& failure) {
   return with_message(failure,
                       failure.message() + "; expected current_A, or power_in_W with an effect input_power_loss; add one to the logs");
-}
-
-base::Failure worded(const diagnosis::NoEffectFollows& failure) {
-  const calibration::PoorFit& worst = failure.worst();
-  return with_message(
-      failure, fmt::format("{}: {} has an error of {} K rms, more than its variation (standard deviation {} K)\n  check for "
-                           "another motor, a wrong unit (degrees Fahrenheit, minutes, milliamperes) or a misplaced "
-                           "sensor; `heatsoak log inspect` shows each channel",
-                           failure.message(), worst.signal, base::significant(worst.rmse_K, 2), base::significant(worst.varies_K, 2)));
 }
 
 /// Returns the words of the first type that the failure has.
@@ -179,7 +170,7 @@ FailureWords measured_logs() {
   return {&worded_as<recording::NothingAboutHeat, recording::RowsGivenTwice, calibration::RunsOfTheFile, estimation::RunNotSimulated,
                      calibration::NothingLearned, calibration::NothingFollows, calibration::LogsLookWrong, friction::LogsLookWrong,
                      friction::DampingNegative, friction::NothingIdentifiable, friction::WheelNotIdentifiable, estimation::NoUsableInterval,
-                     diagnosis::NothingHeatsModel, diagnosis::NoEffectFollows>};
+                     diagnosis::NothingHeatsModel>};
 }
 
 }  // namespace heatsoak::present::failure_words

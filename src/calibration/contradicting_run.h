@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "estimation/fit.h"
 #include "estimation/posterior.h"
 
-namespace heatsoak::diagnosis {
+namespace heatsoak::calibration {
 
 /// A run that the model follows with parameters of its own, but not with those of the other runs. A likely cause is a sensor that was
 /// moved, or a changed mounting.
@@ -17,6 +18,7 @@ struct ContradictingRun {
   double by_others_K = 0.0;  ///< RMS error of this recording with parameters fitted to all other recordings
   double alone_K = 0.0;      ///< RMS error of this recording with parameters fitted to it alone
   double usual_K = 0.0;      ///< RMS error of the other recordings with the parameters of `by_others_K`
+  bool is_left_out = false;  ///< the answer is that of the other runs
 };
 
 /// Returns the run that contradicts the others most; nothing if none does, or for fewer than three recordings. A run with an effect of its
@@ -25,4 +27,8 @@ struct ContradictingRun {
 std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& fit, const std::vector<estimation::MeasuredRun>& runs,
                                                   const std::vector<Eigen::VectorXd>& weights);
 
-}  // namespace heatsoak::diagnosis
+/// Same for a calibration, whose model has no effects of single runs.
+std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const estimation::Fit& fit,
+                                                  const std::vector<estimation::MeasuredRun>& runs);
+
+}  // namespace heatsoak::calibration

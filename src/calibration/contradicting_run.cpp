@@ -1,4 +1,4 @@
-#include "diagnosis/contradicting_run.h"
+#include "calibration/contradicting_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "estimation/left_out_runs.h"
 #include "estimation/thresholds.h"
 
-namespace heatsoak::diagnosis {
+namespace heatsoak::calibration {
 namespace {
 
 /// Smallest error of a run that contradicts the others, and largest error of the others. If the model is wrong by more, runs with
@@ -156,4 +156,14 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Posterior& f
   return largest == found.end() ? std::nullopt : *largest;
 }
 
-}  // namespace heatsoak::diagnosis
+std::optional<ContradictingRun> contradicting_run(const estimation::Model& model, const estimation::Fit& fit,
+                                                  const std::vector<estimation::MeasuredRun>& runs) {
+  estimation::PosteriorOptions options = estimation::least_squares_options(model, kFewSteps);
+  options.weights = fit.setup.weights;
+  estimation::Model fitted = model;
+  fitted.set_theta(fit.theta);
+  const estimation::Posterior near = estimation::try_posterior_of(std::move(fitted), runs, fit.start_C, options);
+  return std::isfinite(near.evidence_nats) ? contradicting_run(near, runs, options.weights) : std::nullopt;
+}
+
+}  // namespace heatsoak::calibration
