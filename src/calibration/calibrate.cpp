@@ -13,13 +13,13 @@
 #include <utility>
 
 #include "base/collected_failures.h"
-#include "base/copper.h"
 #include "base/diagnostic.h"
 #include "base/parallel.h"
 #include "calibration/contradicting_run.h"
 #include "calibration/effect_signals.h"
 #include "calibration/identifiability.h"
 #include "calibration/profile.h"
+#include "calibration/terminal_resistance.h"
 #include "calibration/training_range.h"
 #include "calibration/unlogged_speed.h"
 #include "calibration/written_forecast.h"
@@ -30,7 +30,6 @@
 #include "motor/write_motor.h"
 #include "recording/fingerprint.h"
 #include "recording/quality.h"
-#include "recording/quantities.h"
 
 namespace heatsoak::calibration {
 namespace {
@@ -112,9 +111,11 @@ class Calibrating {
     report_large_changes();
     errors();
     refuse_where_nothing_is_explained();
-    std::ranges::move(outside_declared_ranges(motor, all_.parameters), std::back_inserter(all_.findings));
+    report_outside_declared_ranges(motor);
     report_common_factor();
-    report_terminal_resistance(motor);
+    if (const std::optional<ResistanceDiffers> other = other_terminal_resistance(motor, recordings_)) {
+      all_.findings.emplace_back(*other);
+    }
     report_grown_errors(false, pooled_error_);
     refuse_where_nothing_was_learned();
     report_poor_fit();
@@ -263,43 +264,6 @@ class Calibrating {
     }
   }
 
-  /// Adds a note if V = R·I + K·ω gives another terminal resistance than the file. Needs logs with all three signals that follow this law.
-  void report_terminal_resistance(const motor::Motor& motor) {
-    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d with_voltage = Eigen::Vector2d::Zero();
-    double squares_V2 = 0.0;
-    for (const recording::Recording& recording : recordings_) {
-      const recording::Channel* const voltage = recording.find("motor_V");
-      const recording::Channel* const current = recording.find(recording::column_of(thermal::Signal::current));
-      const recording::Channel* const speed = recording.find(recording::column_of(thermal::Signal::speed));
-      const recording::Channel* const winding = recording.find("winding_C");
-      for (std::size_t row = 0; voltage && current && speed && row < recording.rows(); ++row) {
-        const double winding_C = winding && !std::isnan(winding->values[row]) ? winding->values[row] : base::kSheetTemperature_C;
-        const double hot_ratio = base::resistance_ratio(motor.nominal.temperature_coefficient_per_K, winding_C);
-        const Eigen::Vector2d x(hot_ratio * current->values[row], speed->values[row]);
-        const double voltage_V = voltage->values[row];
-        if (std::isnan(x.sum() + voltage_V)) {
-          continue;
-        }
-        products += x * x.transpose();
-        with_voltage += voltage_V * x;
-        squares_V2 += voltage_V * voltage_V;
-      }
-    }
-    const Eigen::VectorXd found = Eigen::MatrixXd(products).completeOrthogonalDecomposition().solve(Eigen::VectorXd(with_voltage));
-    const double stated_ohm = motor.nominal.terminal_resistance_ohm;
-    // Means over rows with load steps do not follow the law, so require residuals that are small against R·I.
-    constexpr double kFollows_share = 0.02;
-    if (!(squares_V2 - found.dot(with_voltage) < kFollows_share * stated_ohm * stated_ohm * products(0, 0)) || !(found[0] > 0.0)) {
-      return;
-    }
-    const double ratio = found[0] / stated_ohm;
-    constexpr double kFar_ratio = 1.15;
-    if (std::max(ratio, 1.0 / ratio) > kFar_ratio) {
-      all_.findings.push_back(ResistanceDiffers{found[0], stated_ohm});
-    }
-  }
-
   /// Lists signals that are predicted worse than before: with an incomplete model, parameters of the fast response may do that.
   void report_grown_errors(bool is_holdout, const std::vector<ErrorBeforeAfter>& errors) {
     for (const ErrorBeforeAfter& each : errors) {
@@ -309,6 +273,17 @@ class Calibrating {
         const bool is_extended = all_.is_forecast_written && !all_.forecast->accepted.empty();
         all_.worse.push_back({each.signal, is_holdout, each.after.rmse_K, each.before.rmse_K, is_extended});
       }
+    }
+  }
+
+  /// Replaces a large change of the same parameter: one warning per parameter.
+  void report_outside_declared_ranges(const motor::Motor& motor) {
+    for (OutsideDeclaredRange& outside : outside_declared_ranges(motor, all_.parameters)) {
+      std::erase_if(all_.findings, [&](const CalibrationFinding& each) {
+        const auto* const change = std::get_if<LargeChange>(&each);
+        return change != nullptr && change->parameter == outside.parameter;
+      });
+      all_.findings.emplace_back(std::move(outside));
     }
   }
 
@@ -383,7 +358,7 @@ class Calibrating {
     const auto lost = [&](std::span<const ErrorBeforeAfter> errors) {
       std::map<std::string, double> rmse_K;
       std::ranges::for_each(errors, [&](const ErrorBeforeAfter& each) { rmse_K[each.signal] = each.after.rmse_K; });
-      return not_followed(rmse_K, all_.runs, has_finding<LargeChange>(all_.findings) ? 0.0 : kFarShare);
+      return not_followed(rmse_K, all_.runs, has_finding<LargeChange>(all_.findings) ? 0.0 : kFar_share);
     };
     if (std::vector<PoorFit> signals = lost(pooled_error_); !signals.empty() && !lost(innovations_error_).empty()) {
       throw NothingFollows(NothingFollows::Tried::parameters, std::move(signals), all_.motor_model.nuisances.empty());

@@ -13,12 +13,12 @@
 namespace heatsoak::calibration {
 
 /// Share of its variation from which an error of more than 20 K is too large.
-inline constexpr double kFarShare = 0.4;
+inline constexpr double kFar_share = 0.4;
 
 /// Returns the signals that a model does not follow: with an error above the standard deviation of the signal, or above both 20 K and
 /// `far_share` of that deviation. `rmse_K` per signal, over all runs.
 std::vector<PoorFit> not_followed(const std::map<std::string, double>& rmse_K, std::span<const estimation::MeasuredRun> runs,
-                                  double far_share = kFarShare);
+                                  double far_share = kFar_share);
 
 /// Neither parameter values nor effects make the model follow the logs (cannot_answer).
 class NothingFollows : public base::Failure {

@@ -384,8 +384,8 @@ HeatInput heat_input_of(const motor::Motor& motor, std::span<const recording::Re
     if (!has_heat_input(motor, each, HeatInput::current, rules) && !has_heat_input(motor, each, HeatInput::torque, rules)) {
       lacking.push_back({{each.file.string()},
                          std::string(recording::column_of(thermal::Signal::current)),
-                         "is missing in this log or contains no number, and not all logs have power_in_W instead, so heat cannot be "
-                         "computed; add one of the two columns"});
+                         "is missing in this log or has no valid value (see `heatsoak log inspect`), and not all logs have power_in_W "
+                         "instead, so heat cannot be computed; add one of the two columns"});
     }
   }
   if (!lacking.empty()) {

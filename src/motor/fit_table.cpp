@@ -83,17 +83,20 @@ std::optional<HeatInput> read_heat_input(input::Reader& table) {
   return static_cast<HeatInput>(found - kHeatInputNames.begin());
 }
 
+/// Reads the sizes of the forecast's error band: all of them or none, because without one the band, and with it a safety factor, would be
+/// too small.
 std::optional<ForecastBand> read_band(input::Reader& table) {
-  const auto share = [&](const char* key, const char* meaning) {
-    return table.quantity({key, "", base::Range::between(0.0, kMostShare), meaning}, input::Need::optional);
+  const std::vector<std::string> keys = table.keys();
+  const bool is_stated = std::ranges::any_of(keys, [](const std::string& key) { return key.starts_with("forecast_"); });
+  const auto size = [&](const base::ParameterSpec& spec) {
+    return table.quantity(spec, is_stated ? input::Need::required : input::Need::optional);
   };
-  const auto winding = share("forecast_unknown_heat_winding", "rms of slow unknown heat per rms heat of a run");
-  const auto stator = share("forecast_unknown_heat_stator", "rms of slow unknown heat per rms heat of a run");
-  const auto heat = share("forecast_heat_factor", "standard deviation of the logarithm of a factor on all heat of a run");
-  const auto time_s =
-      table.quantity({"forecast_time_scale", "s", base::Range::positive(), "correlation time of the unknown heat"}, input::Need::optional);
-  const auto width =
-      table.quantity({"forecast_width", "", base::Range::between(0.01, 100.0), "factor on the width of the band"}, input::Need::optional);
+  const base::Range share = base::Range::between(0.0, kMostShare);
+  const auto winding = size({"forecast_unknown_heat_winding", "", share, "rms of slow unknown heat per rms heat of a run"});
+  const auto stator = size({"forecast_unknown_heat_stator", "", share, "rms of slow unknown heat per rms heat of a run"});
+  const auto heat = size({"forecast_heat_factor", "", share, "standard deviation of the logarithm of a factor on all heat of a run"});
+  const auto time_s = size({"forecast_time_scale", "s", base::Range::positive(), "correlation time of the unknown heat"});
+  const auto width = size({"forecast_width", "", base::Range::between(0.01, 100.0), "factor on the width of the band"});
   if (!winding || !stator || !heat || !time_s || !width) {
     return std::nullopt;
   }

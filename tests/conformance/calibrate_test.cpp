@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
                                cells[4] = "nan";
                              }
                            },
-                           2, "is missing in this log or contains no number"},
+                           2, "is missing in this log or has no valid value"},
                     BadLog{"NoTemperatures",
                            [](std::vector<CsvCells>& rows) {
                              for (CsvCells& cells : rows) {

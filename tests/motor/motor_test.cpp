@@ -272,6 +272,21 @@ forecast_heat_factor = "0.0345"
 forecast_width = "1.26"
 )";
 
+// A deleted line must not make the band, and with it the safety factor of a derating, smaller.
+TEST(MotorFit, has_all_sizes_of_the_forecast_band_or_none) {
+  std::string text = kFit;
+  text.replace(text.find("%s"), 2, "linear");
+  for (const std::string key : {"forecast_unknown_heat_winding", "forecast_time_scale", "forecast_heat_factor", "forecast_width"}) {
+    const std::size_t begin = text.find(key);
+    std::string without = text;
+    without.erase(begin, text.find('\n', begin) + 1 - begin);
+    EXPECT_THAT([&] { motor_with("between_terminals", "per_dc_ampere", without); },
+                testing::ThrowsMessage<base::Failure>(testing::HasSubstr(key)));
+  }
+  text.erase(text.find("forecast_"));
+  EXPECT_FALSE(motor_with("between_terminals", "per_dc_ampere", text).fit->band);
+}
+
 TEST(MotorFit, states_how_the_speed_changes_within_rows) {
   std::string text = kFit;
   const std::size_t place = text.find("%s");

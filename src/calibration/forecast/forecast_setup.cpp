@@ -133,12 +133,12 @@ class Listing {
   }
 
   void heat_split() {
-    constexpr double kUsual_share = 0.1;
+    constexpr double kElsewhere_share = 0.1;
     if (setup_.heat == HeatInput::input_power) {
-      add(effect("input_power_at_stator", "input_power_loss", {"stator"}, {free_parameter(kUsual_share, kShape_sd)}));
+      add(effect("input_power_at_stator", "input_power_loss", {"stator"}, {free_parameter(kElsewhere_share, kShape_sd)}));
     } else {
       add(effect("connection_resistance", "connection_resistance", {"stator"},
-                 {free_parameter(kUsual_share * value("copper_loss.terminal_resistance"), kShape_sd)}));
+                 {free_parameter(kElsewhere_share * value("copper_loss.terminal_resistance"), kShape_sd)}));
     }
   }
 

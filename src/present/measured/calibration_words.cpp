@@ -76,8 +76,9 @@ std::string say(const calibration::ResistanceDiffers& of) {
 
 std::string say(const calibration::LargeChange& of) {
   return fmt::format(
-      "{} becomes {} times the value of the file, a change of {} prior standard deviations: is a unit of the logs wrong, or is it another "
-      "motor?",
+      "{} becomes {} times the value of the file, a change of {} prior standard deviations: check the units of the logs, and whether "
+      "motor, "
+      "mounting and cooling are those of the file",
       of.parameter, base::significant(of.factor, 2), base::significant(of.change_sd, 2));
 }
 
@@ -85,7 +86,7 @@ std::string say(const calibration::OutsideDeclaredRange& of) {
   const std::string unit = of.unit.empty() ? "" : fmt::format(" {}", base::unit_for_display(of.unit));
   return fmt::format(
       "{} becomes {}{}, outside of its declared range of {} to {}{}: check the units of the logs, and whether the range holds for this "
-      "motor and its mounting; state a wider range if the value is a guess",
+      "motor, its mounting and its cooling; state a wider range if the value is a guess",
       of.parameter, base::significant(of.value, 3), unit, base::significant(of.low, 3), base::significant(of.high, 3), unit);
 }
 
