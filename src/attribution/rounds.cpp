@@ -38,8 +38,8 @@ std::vector<CandidateRule> rules_of(const std::vector<Candidate>& candidates, co
   for (const Candidate& each : candidates) {
     CandidateRule rule;
     rule.has_sign = each.size_spec().range.low >= 0.0;
-    const double kind_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
-    rule.prior_nats = kind_nats - std::log(static_cast<double>(counts[group(each)]));
+    rule.prior_nats = each.condition.empty() ? rules.inclusion_nats : rules.conditional_nats;
+    rule.prior_nats -= std::log(static_cast<double>(counts[group(each)]));
     rule.id = each.id;
     // Offsets of the two sensors have different families: their difference can also be explained by heat.
     rule.family = each.sensor_type ? each.id.substr(0, each.id.rfind('_')) : std::string(each.family());
@@ -58,8 +58,7 @@ std::vector<Eigen::Index> well_known_values(const estimation::Model& model) {
   const Eigen::MatrixXd precision = model.full_prior().precision;
   for (Eigen::Index i = 0; i < model.network_count(); ++i) {
     const double known_sd = estimation::thresholds().well_known_ratio * calibration::kSheet_sd;
-    const bool is_well_known = precision(i, i) * known_sd * known_sd > 1.0;
-    if (is_well_known && model.free[static_cast<std::size_t>(i)].by_log) {
+    if (precision(i, i) * known_sd * known_sd > 1.0 && model.free[static_cast<std::size_t>(i)].by_log) {
       known.push_back(i);
     }
   }
@@ -346,9 +345,7 @@ void Rounds::note() {
   std::ranges::stable_sort(round.ladder, std::greater(), &JudgedCandidate::gain_nats);
   round.ladder.resize(std::min(round.ladder.size(), kMostReported));
   const EffectSet& best = search_->sets().front();
-  for (const int member : best.members) {
-    round.taken.push_back(set_rules_[static_cast<std::size_t>(member)].id);
-  }
+  std::ranges::transform(best.members, std::back_inserter(round.taken), [this](int member) { return id_of(member); });
   const auto empty = std::ranges::find_if(search_->sets(), [](const EffectSet& set) { return set.members.empty(); });
   round.taken_nats = best.log_probability_nats - empty->log_probability_nats;
   out_.nothing_probability = empty->probability;
@@ -368,8 +365,7 @@ void Rounds::note_sight() {
       out_.unseen.push_back(name);
     }
   }
-  const auto all = static_cast<double>(std::max<std::size_t>(1, best_nats.size()));
-  out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / all;
+  out_.seen_share = 1.0 - static_cast<double>(out_.unseen.size()) / std::max(1.0, static_cast<double>(best_nats.size()));
 }
 
 estimation::Posterior Rounds::more_predictive(estimation::Posterior fit, const std::vector<estimation::MeasuredRun>& runs) const {

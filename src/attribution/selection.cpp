@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "attribution/rounds.h"
 #include "estimation/free_run_errors.h"
@@ -90,19 +91,19 @@ class Selector : Rounds {
                                 limits.clearly_other_ratio * input_.usual.flux_W.value_or(0.0)});
   }
 
-  /// Returns the probability of a name. What differs in some runs is one question, so its probability includes the effects of the same
-  /// runs, or of exactly the others, that may replace it. The answer lists them as indistinguishable.
-  [[nodiscard]] double probability_of(const EffectSet& best, std::size_t member) const {
+  /// Returns the effects of related conditions, see estimation::are_related(), that may replace a member; none for one of all runs.
+  [[nodiscard]] std::vector<int> related(const EffectSet& best, std::size_t member) const {
     const estimation::Condition own = condition_of(best.members[member]);
-    if (own.empty()) {
-      return search_->family_probability(best, member);
-    }
-    std::vector<int> others = search_->stand_ins(best, member, estimation::thresholds().distinct_nats);
+    std::vector<int> others(own.empty() ? 0 : candidates().size());
+    std::iota(others.begin(), others.end(), 0);
     std::erase_if(others, [&](int other) {
-      const estimation::Condition where = condition_of(other);
-      return where != own && std::ranges::any_of(input_.runs, [&](const auto& run) { return run.has(where) == run.has(own); });
+      return std::ranges::count(best.members, other) > 0 || !estimation::are_related(condition_of(other), own, input_.runs);
     });
-    return search_->family_probability(best, member, others);
+    return others;
+  }
+
+  [[nodiscard]] double probability_of(const EffectSet& best, std::size_t member) const {
+    return search_->family_probability(best, member, related(best, member));
   }
 
   [[nodiscard]] estimation::Condition condition_of(int member) const {
@@ -213,8 +214,9 @@ class Selector : Rounds {
   void keep_as_it_is(const Judged& judged) {
     estimation::PosteriorOptions as_it_is = setup_.with(setup_.grid.at(judged.empty_place));
     as_it_is.most_steps = 0;
-    out_.after = out_.own = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
+    out_.after = estimation::posterior_of(input_.model, input_.runs, starts_of(input_.model), as_it_is);
     out_.after.covariance = input_.model.full_prior().precision.inverse();
+    out_.own = out_.after;
   }
 
   /// Returns the RMS error in K of left-out recordings, by plain fits; ∞ if one fails. Recordings with an own effect of `all` do not count.
@@ -326,12 +328,12 @@ class Selector : Rounds {
     return names;
   }
 
-  /// True if the final model sets the size to zero, or if zero is in the 95 % interval of a sensor error, which unknown bodies imitate.
+  /// True if the final model sets the size to zero, or if zero is in the 95 % interval of an error of a sensor or of single runs.
   [[nodiscard]] bool has_no_size(const EffectSet& best, const Names& named, std::size_t m) const {
     const Candidate& candidate = candidates()[static_cast<std::size_t>(best.members[m])];
     const estimation::Model& model = out_.after.model;
     const Eigen::Index size = size_coordinate(model, candidate, instances(model, kept_members(best, named))[best.members[m]]);
-    const double least_share = candidate.sensor_type ? estimation::kInterval_sd * std::sqrt(out_.after.covariance(size, size)) : 1e-6;
+    const double least_share = candidate.type ? 1e-6 : estimation::kInterval_sd * std::sqrt(out_.after.covariance(size, size));
     return model.low(size) <= 0.0 && std::abs(model.theta()[size]) < least_share;
   }
 
@@ -343,7 +345,7 @@ class Selector : Rounds {
       term.candidate = candidates()[static_cast<std::size_t>(member)];
       term.effect_name = names.contains(member) ? names[member] : "";
       term.probability = probability_of(best, m);
-      term.loss_without_nats = search_->loss_without_nats(best, m);
+      term.loss_without_nats = search_->loss_without_nats(best, m, related(best, m));
       term.visibility_ratio = search_->visibility_ratio(member);
       for (const int other : search_->stand_ins(best, m, estimation::thresholds().distinct_nats)) {
         if (!is_parameter(other)) {

@@ -201,26 +201,26 @@ int SetSearch::rank_in_family(const EffectSet& set, std::size_t place) const {
   return rank;
 }
 
+bool SetSearch::answers(const EffectSet& each, const std::string& family, int least, const std::vector<int>& others) const {
+  const auto is_in = [&](int other) { return std::ranges::binary_search(each.members, other); };
+  return std::ranges::any_of(others, is_in) || count_of(each, family) >= least;
+}
+
 double SetSearch::family_probability(const EffectSet& set, std::size_t place, const std::vector<int>& others) const {
   const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
   const int least = rank_in_family(set, place);
   double sum = 0.0;
   for (const EffectSet& each : sets_) {
-    const bool has_other = std::ranges::any_of(others, [&](int other) { return std::ranges::binary_search(each.members, other); });
-    sum += has_other || count_of(each, family) >= least ? each.probability : 0.0;
+    sum += answers(each, family, least, others) ? each.probability : 0.0;
   }
   return sum;
 }
 
-double SetSearch::loss_without_nats(const EffectSet& set, std::size_t place) const {
+double SetSearch::loss_without_nats(const EffectSet& set, std::size_t place, const std::vector<int>& others) const {
   const std::string& family = candidates_[static_cast<std::size_t>(set.members[place])].family;
   const int least = rank_in_family(set, place);
-  for (const EffectSet& each : sets_) {
-    if (count_of(each, family) < least) {
-      return set.log_probability_nats - each.log_probability_nats;
-    }
-  }
-  return 0.0;
+  const auto without = std::ranges::find_if(sets_, [&](const EffectSet& each) { return !answers(each, family, least, others); });
+  return without == sets_.end() ? 0.0 : set.log_probability_nats - without->log_probability_nats;
 }
 
 double SetSearch::single_gain_nats(int candidate) const {

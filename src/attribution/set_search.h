@@ -55,8 +55,8 @@ class SetSearch {
   /// Ranks the members of the set within their family, the most certain first. Returns the probability of all sets that have at least as
   /// many members of the family as the rank of the member at `place`, or one of `others`, which may replace it.
   [[nodiscard]] double family_probability(const EffectSet& set, std::size_t place, const std::vector<int>& others = {}) const;
-  /// Returns ln P of `set` minus that of the best set with fewer members of this family; 0 if there is none.
-  [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place) const;
+  /// Returns ln P of `set` minus that of the best set with fewer members of this family and none of `others`; 0 if there is none.
+  [[nodiscard]] double loss_without_nats(const EffectSet& set, std::size_t place, const std::vector<int>& others = {}) const;
   /// Returns the ln evidence of the candidate alone minus that of the empty set, without priors.
   [[nodiscard]] double single_gain_nats(int candidate) const;
   /// Returns candidates that may replace the member at `place` with a loss of ln P of at most `within_nats`.
@@ -80,6 +80,8 @@ class SetSearch {
   /// Returns ln P of a set, not normalised; −∞ if it was not evaluated.
   [[nodiscard]] double nats_of(const std::vector<int>& members) const;
   [[nodiscard]] int count_of(const EffectSet& set, const std::string& family) const;
+  /// True if the set has at least `least` members of the family, or one of `others`.
+  [[nodiscard]] bool answers(const EffectSet& each, const std::string& family, int least, const std::vector<int>& others) const;
   /// Returns 1 for the most certain member of its family, 2 for the next, and so on.
   [[nodiscard]] int rank_in_family(const EffectSet& set, std::size_t place) const;
 

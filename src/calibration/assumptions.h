@@ -2,6 +2,7 @@
 // words.
 #pragma once
 
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -46,8 +47,20 @@ struct SignalsMissing {
   bool is_unread = false;      ///< the current is logged but not read, because the heat comes from another input
   bool is_unused = false;      ///< the effect does not act without all of its signals
 };
-/// Value of the motor file that is not fitted, and why.
-using HeldValue = std::variant<ResistanceHeld, NoLoadCurrentUnused, NoLoadCurrentHeld, HeatShareHeld, EffectHeld, SensorHeld, SensorUnused>;
+/// A conditional effect acts in every run, because its type has no size that could be set to 0.
+struct ConditionNotApplied {
+  std::string effect;
+  std::string type;
+  std::map<std::string, std::string> condition;
+};
+/// No log has the condition of an effect.
+struct ConditionNeverMet {
+  std::string effect;
+  std::map<std::string, std::string> condition;
+};
+/// Value of the motor file that is not fitted, or effect that does not act as stated, and why.
+using HeldValue = std::variant<ResistanceHeld, NoLoadCurrentUnused, NoLoadCurrentHeld, HeatShareHeld, EffectHeld, SensorHeld, SensorUnused,
+                               ConditionNotApplied, ConditionNeverMet>;
 
 /// The log of a recording has a current but no speed, so its band includes a loss at speed of up to `most_W`.
 struct BandIncludesLossAtSpeed {

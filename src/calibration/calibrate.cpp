@@ -79,7 +79,7 @@ class Calibrating {
       all_.findings.emplace_back(*std::move(unknown));
     }
     std::ranges::copy(all_.motor_model.held, std::back_inserter(all_.findings));
-    std::ranges::move(held_sensors(motor, recordings_), std::back_inserter(all_.findings));
+    std::ranges::move(held_in_recordings(motor, recordings_), std::back_inserter(all_.findings));
     estimation::MeasuredRunOptions how = how_to_read(motor, setup_.heat);
     std::ranges::move(estimation::columns_lacking(how.columns, recordings_), std::back_inserter(all_.findings));
     std::ranges::move(missing_signals(motor, recordings_, how), std::back_inserter(all_.findings));

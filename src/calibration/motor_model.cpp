@@ -51,6 +51,12 @@ double implicit_power_share(const motor::Motor& motor) {
   return std::max(0.0, share);
 }
 
+/// Returns the motor with every effect in its network, whatever its condition: runs with and without it are fitted together.
+motor::Motor unconditional(motor::Motor motor) {
+  std::ranges::for_each(motor.effects, [](motor::MotorEffect& effect) { effect.condition.clear(); });
+  return motor;
+}
+
 /// Returns the motor with the effects that act with this heat input. Without a logged current, a remaining_loss would be the whole loss,
 /// in addition to that of the input power; without the balance, it would act beside the no-load loss.
 motor::Motor with_acting_effects(motor::Motor motor, HeatInput heat) {
@@ -63,7 +69,7 @@ motor::Motor with_acting_effects(motor::Motor motor, HeatInput heat) {
 class ModelBuilder {
  public:
   ModelBuilder(const motor::Motor& motor, HeatInput heat, bool with_speed)
-      : motor_(with_acting_effects(motor, heat)), with_speed_(with_speed) {
+      : motor_(unconditional(with_acting_effects(motor, heat))), with_speed_(with_speed) {
     all_.heat = heat;
     all_.model.network = motor::datasheet_network(motor_, motor::nominal_sample(motor_));
     if (heat == HeatInput::input_power) {
@@ -83,6 +89,7 @@ class ModelBuilder {
     if (!is_by_current(heat)) {
       all_.model.values[static_cast<std::size_t>(place_of(all_.model.network, "no_load_loss.drag_torque"))] = 0.0;
     }
+    conditions(motor);
     all_.model.flux_nodes = {all_.model.network.node("winding"), all_.model.network.node("stator")};
     all_.needed = {heat == HeatInput::input_power ? thermal::Signal::input_power : thermal::Signal::current};
     if (heat == HeatInput::power_balance) {
@@ -117,6 +124,17 @@ class ModelBuilder {
   static constexpr double kSheet_ratio = 30.0;
   static constexpr double kGuess_ratio = 1000.0;
 
+  /// Sets the size of conditional effects to 0 in runs without their condition. An effect without such a size acts in all runs.
+  void conditions(const motor::Motor& motor) {
+    for (const motor::MotorEffect& effect : motor.effects) {
+      const std::optional<int> size = effect.type->candidacy.size_parameter;
+      const auto in_place = std::ranges::find(all_.model.network.effects(), effect.name, &thermal::EffectInPlace::name);
+      if (!effect.condition.empty() && size && in_place != all_.model.network.effects().end()) {
+        all_.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(*size)], 0.0, effect.condition});
+      }
+    }
+  }
+
   /// Frees a parameter within a factor `far_ratio` of its value. Returns its index among the free ones.
   int free(const std::string& parameter, double far_ratio = kSheet_ratio) {
     const int place = place_of(all_.model.network, parameter);
@@ -147,11 +165,13 @@ class ModelBuilder {
     const base::ParameterValue& resistance = motor_.parameters.find("terminal_resistance")->second;
     // A published or measured resistance sets the scale of all heat and is held; an estimate is fitted.
     if (resistance.spread || resistance.origin == base::Origin::estimated) {
-      add_parameter("terminal_resistance", {{free("copper_loss.terminal_resistance"), 1.0}});
-      // A resistance does not depend on the mounting, so its spread is not widened.
-      if (resistance.spread) {
-        all_.parameters.back().prior_sd = std::min(all_.parameters.back().prior_sd, prior_sd_of_spread(resistance));
-      }
+      // A resistance does not depend on the mounting, so its spread is not widened. It sets the scale of all heat, which temperatures do not
+      // determine: an incomplete model must not move it far from its stated range.
+      const double sd = resistance.spread ? std::min(prior_sd_of(resistance), prior_sd_of_spread(resistance)) : prior_sd_of(resistance);
+      constexpr double kFurthest_sd = 6.0;
+      add_parameter("terminal_resistance",
+                    {{free("copper_loss.terminal_resistance", std::min(kSheet_ratio, std::exp(kFurthest_sd * sd))), 1.0}});
+      all_.parameters.back().prior_sd = std::min(all_.parameters.back().prior_sd, sd);
     } else {
       all_.held.emplace_back(ResistanceHeld{});
     }
@@ -181,10 +201,6 @@ class ModelBuilder {
       for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
         const base::ParameterSpec& spec = effect.type->parameters[i];
         const std::string name = fmt::format("{}.{}", effect.name, spec.key);
-        // An effect whose condition does not hold is not in the network.
-        if (place_of(all_.model.network, name) < 0) {
-          continue;
-        }
         if (!spec.choices.empty() || !effect.parameters[i].spread || !(effect.parameters[i].value > 0.0)) {
           if (spec.choices.empty()) {
             held.emplace_back(spec.key);
@@ -421,7 +437,15 @@ std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, st
   return finding;
 }
 
-std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
+/// True if the recording states the condition. Its name is its condition "run".
+static bool holds(const recording::Recording& recording, const std::map<std::string, std::string>& condition) {
+  return std::ranges::all_of(condition, [&](const auto& part) {
+    const auto found = recording.conditions.find(part.first);
+    return found != recording.conditions.end() ? found->second == part.second : part.first == "run" && part.second == recording.name;
+  });
+}
+
+std::vector<HeldValue> held_in_recordings(const motor::Motor& motor, std::span<const recording::Recording> recordings) {
   std::vector<HeldValue> held;
   for (const motor::MotorSensor& sensor : motor.sensors) {
     const motor::SensorEffectType& type = *sensor.type;
@@ -431,6 +455,17 @@ std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const r
       held.emplace_back(SensorHeld{sensor.name, std::string(type.size.key), sensor.size.value, std::string(type.size.unit)});
     } else {
       held.emplace_back(SensorUnused{sensor.name, std::string(type.signal)});
+    }
+  }
+  for (const motor::MotorEffect& effect : motor.effects) {
+    if (effect.condition.empty()) {
+      continue;
+    }
+    const auto count = std::ranges::count_if(recordings, [&](const recording::Recording& each) { return holds(each, effect.condition); });
+    if (!effect.type->candidacy.size_parameter && count < std::ssize(recordings)) {
+      held.emplace_back(ConditionNotApplied{effect.name, std::string(effect.type->name), effect.condition});
+    } else if (count == 0) {
+      held.emplace_back(ConditionNeverMet{effect.name, effect.condition});
     }
   }
   return held;

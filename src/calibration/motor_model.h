@@ -60,8 +60,9 @@ struct MotorModel {
 /// logged current is read only if it is the heat input. Sensors have the faults stated in the file.
 estimation::MeasuredRunOptions how_to_read(const motor::Motor& motor, HeatInput heat);
 
-/// Returns the sensor errors stated in the file, which are not fitted.
-std::vector<HeldValue> held_sensors(const motor::Motor& motor, std::span<const recording::Recording> recordings);
+/// Returns what the recordings do not let act or be fitted as the file states: sensor errors, which are never fitted, and effects whose
+/// condition no recording has or that no condition can switch off.
+std::vector<HeldValue> held_in_recordings(const motor::Motor& motor, std::span<const recording::Recording> recordings);
 
 /// Returns true if the effect takes its heat from a measured power balance.
 bool is_remaining_loss(const motor::MotorEffect& effect);
@@ -90,7 +91,7 @@ std::optional<HeatInputLacking> lacking_heat_input(const motor::Motor& motor, st
 /// Returns a finding if `used` is the input power, with the recordings that have no shaft power.
 std::optional<ShaftPowerUnknown> shaft_power_unknown(std::span<const recording::Recording> recordings, HeatInput used);
 
-/// Builds the model. `with_speed`: all logs have a speed, so that the no-load loss is observable. A remaining_loss acts only in the power
+/// Builds the model. Effects with a condition act only in runs that state it. `with_speed`: all logs have a speed, so that the no-load loss is observable. A remaining_loss acts only in the power
 /// balance: the other heat inputs contain that loss.
 MotorModel motor_model(const motor::Motor& motor, HeatInput heat, bool with_speed);
 

@@ -8,24 +8,12 @@
 #include "base/diagnostic.h"
 #include "calibration/contradicting_run.h"
 #include "calibration/findings.h"
-#include "estimation/run_deviation.h"
 
 namespace heatsoak::diagnosis {
 
 /// The motor file has these effects for better forecasts only. An effect that they imitate may stay unfound.
 struct ExtensionsMayImitate {
   std::vector<std::string> effects;
-};
-/// A conditional effect acts in every run, because its type has no size that could be set to 0.
-struct ConditionNotApplied {
-  std::string effect;
-  std::string type;
-  estimation::Condition condition;
-};
-/// No log has the condition of an effect.
-struct ConditionNeverMet {
-  std::string effect;
-  estimation::Condition condition;
 };
 /// The file was fitted to some of these runs. Its intervals are replaced by those of a data sheet.
 struct IntervalsOfDataSheet {};
@@ -44,10 +32,10 @@ struct ColumnsNotSearched {
   std::vector<std::string> columns;
 };
 
-using DiagnosisFinding = std::variant<ExtensionsMayImitate, calibration::ContradictingRun, calibration::SignalsMissing, ConditionNotApplied,
-                                      ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
-                                      ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn, calibration::HeldValue,
-                                      calibration::HeatInputLacking, calibration::ShaftPowerUnknown, estimation::RunNote>;
+using DiagnosisFinding =
+    std::variant<ExtensionsMayImitate, calibration::ContradictingRun, calibration::SignalsMissing, IntervalsOfDataSheet, HoldoutWasFitted,
+                 LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn,
+                 calibration::HeldValue, calibration::HeatInputLacking, calibration::ShaftPowerUnknown, estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NothingHeatsModel : public base::Failure {

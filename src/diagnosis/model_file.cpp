@@ -46,32 +46,6 @@ void set_needed(ModelOfLogs& out, const motor::Motor& motor, const std::vector<r
   std::ranges::move(signals.missing, std::back_inserter(out.findings));
 }
 
-/// Switches conditional effects off in runs without their condition. Adds a finding if that is impossible, or if no run has the condition.
-void add_conditional_effects(const motor::Motor& motor, const std::vector<recording::Recording>& recordings, ModelOfLogs& out) {
-  const auto holds = [](const recording::Recording& recording, const std::map<std::string, std::string>& condition) {
-    return std::ranges::all_of(condition, [&](const auto& part) {
-      const auto found = recording.conditions.find(part.first);
-      return found != recording.conditions.end() ? found->second == part.second : part.first == "run" && part.second == recording.name;
-    });
-  };
-  for (const motor::MotorEffect& effect : motor.effects) {
-    if (effect.condition.empty()) {
-      continue;
-    }
-    const auto count = std::ranges::count_if(recordings, [&](const recording::Recording& each) { return holds(each, effect.condition); });
-    const std::optional<int> size = effect.type->candidacy.size_parameter;
-    if (!size && count < std::ssize(recordings)) {
-      out.findings.emplace_back(ConditionNotApplied{effect.name, std::string(effect.type->name), effect.condition});
-    } else if (count == 0) {
-      out.findings.emplace_back(ConditionNeverMet{effect.name, effect.condition});
-    }
-    if (size) {
-      const auto in_place = std::ranges::find(out.model.network.effects(), effect.name, &thermal::EffectInPlace::name);
-      out.model.conditional.push_back({effect.name, in_place->parameter_index[static_cast<std::size_t>(*size)], 0.0, effect.condition});
-    }
-  }
-}
-
 constexpr const char* kSource = "diagnosis";
 
 base::ParameterValue measured(double value, double low, double high, const base::Range& range) {
@@ -229,14 +203,11 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   const auto have = [&](thermal::Signal signal) {
     return std::ranges::all_of(recordings, [&](const recording::Recording& each) { return estimation::has_signal(each, signal); });
   };
-  motor::Motor everywhere = motor;
-  for (motor::MotorEffect& effect : everywhere.effects) {
-    effect.condition.clear();
-  }
-  forget_fit(everywhere, recordings, out.findings);
-  if (everywhere.fit) {
-    out.fitted = everywhere.fit->runs;
-    out.training = everywhere.fit->training;
+  motor::Motor known = motor;
+  forget_fit(known, recordings, out.findings);
+  if (known.fit) {
+    out.fitted = known.fit->runs;
+    out.training = known.fit->training;
   }
   std::ranges::transform(recordings, std::back_inserter(out.fitted), recording::name_and_fingerprint);
   out.heat = calibration::heat_input_of(motor, recordings);
@@ -247,22 +218,21 @@ ModelOfLogs model_of_logs(const motor::Motor& motor, const std::vector<recording
   if (std::optional<calibration::ShaftPowerUnknown> unknown = calibration::shaft_power_unknown(recordings, out.heat)) {
     out.findings.emplace_back(*std::move(unknown));
   }
-  calibration::MotorModel built = calibration::motor_model(everywhere, out.heat, have(thermal::Signal::speed));
+  calibration::MotorModel built = calibration::motor_model(known, out.heat, have(thermal::Signal::speed));
   out.how = calibration::how_to_read(motor, built.heat);
   if (calibration::is_by_current(built.heat) && !have(thermal::Signal::speed) && calibration::most_loss_at_speed_W(motor) > 0.0) {
     out.findings.emplace_back(LossInUnknownHeat{calibration::most_loss_at_speed_W(motor)});
   }
   out.model = std::move(built.model);
   out.model.columns = out.how.columns;
-  if (everywhere.fit) {
-    out.usual.error_K = everywhere.fit->free_run_error_K;
-    const std::vector<double>& flux_W = everywhere.fit->latent_flux_W;
+  if (known.fit) {
+    out.usual.error_K = known.fit->free_run_error_K;
+    const std::vector<double>& flux_W = known.fit->latent_flux_W;
     out.usual.flux_W = flux_W.empty() ? std::nullopt : std::optional(std::ranges::max(flux_W));
   }
   out.parameters = std::move(built.parameters);
   std::ranges::move(built.held, std::back_inserter(out.findings));
-  std::ranges::move(calibration::held_sensors(motor, recordings), std::back_inserter(out.findings));
-  add_conditional_effects(motor, recordings, out);
+  std::ranges::move(calibration::held_in_recordings(motor, recordings), std::back_inserter(out.findings));
   std::ranges::move(estimation::columns_lacking(out.how.columns, recordings), std::back_inserter(out.findings));
   set_needed(out, motor, recordings);
   const bool has_torque = have(thermal::Signal::shaft_power);

@@ -82,6 +82,15 @@ std::string in_words(const Condition& condition) {
   return text;
 }
 
+bool are_related(const Condition& a, const Condition& b, std::span<const MeasuredRun> runs) {
+  if (a.empty() || b.empty()) {
+    return a == b;
+  }
+  const auto is_key_of_b = [&](const auto& part) { return part.first != "run" && b.contains(part.first); };
+  const bool have_same_keys = a.size() == b.size() && std::ranges::all_of(a, is_key_of_b);
+  return a == b || have_same_keys || std::ranges::none_of(runs, [&](const MeasuredRun& run) { return run.has(a) == run.has(b); });
+}
+
 std::vector<Condition> conditions_of(std::span<const MeasuredRun> runs) {
   std::vector<Condition> conditions;
   std::vector<std::vector<bool>> known;

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <variant>
 
 #include "calibration/calibrate.h"
@@ -41,13 +39,6 @@ TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
 
-motor::Motor motor_of(const Runs& runs) {
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("contradicting_{}.toml", getpid());
-  motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
-  return motor;
-}
-
 // A fan that blows in one run only is an effect of that run, not a contradiction.
 TEST(ContradictingRun, IsNoneWithAnEffectOfItsOwn) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
@@ -62,7 +53,7 @@ TEST(ContradictingRun, IsNoneWithAnEffectOfItsOwn) {
     runs.training[kMovedIn] = record(with_fan).training[kMovedIn];
     recording::NamedLogs logs;
     std::ranges::transform(runs.training, std::back_inserter(logs.fitted), &TrueRun::log);
-    const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({motor_of(runs), logs});
+    const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({sheet_of(runs.make), logs});
     claim.expect(
         std::ranges::none_of(answer.findings, [](const auto& each) { return std::holds_alternative<calibration::ContradictingRun>(each); }),
         "the run is left out");
@@ -84,7 +75,7 @@ TEST(ContradictingRun, IsReportedByACalibration) {
       calibration::CalibrationOptions options;
       options.fit.threads = 1;
       std::vector<std::string> found;
-      for (const calibration::CalibrationFinding& each : calibration::calibrate(motor_of(runs), logs, {}, options).findings) {
+      for (const calibration::CalibrationFinding& each : calibration::calibrate(sheet_of(runs.make), logs, {}, options).findings) {
         if (const auto* const odd = std::get_if<calibration::ContradictingRun>(&each)) {
           found.push_back(odd->run);
         }
@@ -104,7 +95,7 @@ TEST(ContradictingRun, IsLeftOutOfTheFit) {
   Case one;
   one.seed = 3;
   Runs runs = record(one);
-  const motor::Motor motor = motor_of(runs);
+  const motor::Motor motor = sheet_of(runs.make);
   const auto answer_to = [&](bool has_moved) {
     recording::NamedLogs logs;
     for (std::size_t r = 0; r < runs.training.size(); ++r) {

@@ -1,19 +1,23 @@
 #include "examination.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "base/unknown.h"
 #include "drive_rows.h"
 #include "estimation/log_columns.h"
 #include "estimation/measured_run.h"
 #include "estimation/turning_rows.h"
+#include "motor/write_motor.h"
 
 namespace heatsoak::attribution::truth {
 namespace {
@@ -95,8 +99,22 @@ Runs record(const Case& sealed) {
   return runs;
 }
 
-motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) {
-  std::ofstream out(file);
+namespace {
+
+motor::Motor motor_in(const std::string& text) {
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("heatsoak_sheet_{}.toml", getpid());
+  std::ofstream(file) << text;
+  motor::Motor motor = motor::read_motor(file);
+  std::filesystem::remove(file);
+  return motor;
+}
+
+}  // namespace
+
+motor::Motor read_back(const motor::Motor& motor) { return motor_in(motor::to_toml(motor)); }
+
+motor::Motor sheet_of(const MotorMake& make) {
+  std::ostringstream out;
   out << "manufacturer = \"none\"\nname = \"made up\"\ntype = \"brushless\"\n[sources]\ns = \"made up\"\n[conventions]\n"
          "terminal_resistance = \"between_terminals\"\ntorque_constant = \"per_dc_ampere\"\n[figures]\n";
   const auto put = [&](const char* key, double value, const char* unit) {
@@ -112,8 +130,7 @@ motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file) 
   put("thermal_resistance_stator_ambient", 0.9 * make.iron_to_air_K_per_W, "K/W");
   put("thermal_time_constant_winding", make.copper_to_iron_K_per_W * make.copper_capacity_J_per_K, "s");
   put("thermal_time_constant_stator", make.iron_to_air_K_per_W * make.iron_capacity_J_per_K, "s");
-  out.close();
-  return motor::read_motor(file);
+  return motor_in(out.str());
 }
 
 Calibrated calibrated(const Case& sealed, const MotorMake& make, const std::vector<TrueRun>& runs) {

@@ -42,8 +42,10 @@ Runs record(const Case& sealed);
 /// Model before a calibration: the copper resistance is right, every other parameter is off by up to 25 %.
 estimation::Model model_before(const MotorMake& make, std::uint64_t seed);
 
-/// Writes a data sheet of the motor, whose thermal resistances are off by up to 15 %, to `file` and reads it.
-motor::Motor sheet_of(const MotorMake& make, const std::filesystem::path& file);
+/// Returns a data sheet of the motor, whose thermal resistances are off by up to 15 %.
+motor::Motor sheet_of(const MotorMake& make);
+/// Writes the motor's file and reads it, as the next verb of a user would.
+motor::Motor read_back(const motor::Motor& motor);
 
 struct Calibrated {
   estimation::Model model;

@@ -1,10 +1,8 @@
 // Bands of the forecasts with an extended motor file, on unseen runs of motors with eight parts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "calibration/forecast/prediction.h"
 #include "diagnosis/diagnosis_job.h"
@@ -22,9 +20,7 @@ std::vector<recording::Recording> logs_of(const std::vector<TrueRun>& runs) {
 
 diagnosis::DiagnosisAnswer answer_of(const Case& sealed) {
   const Runs runs = record(sealed);
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("left_out_band_{}.toml", getpid());
-  const motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
+  const motor::Motor motor = sheet_of(runs.make);
   recording::NamedLogs logs;
   logs.fitted = logs_of(runs.training);
   logs.held_out = logs_of(runs.unseen);

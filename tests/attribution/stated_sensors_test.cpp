@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "attribution/terms.h"
 #include "diagnosis/diagnosis_job.h"
 #include "examination.h"
-#include "motor/write_motor.h"
 #include "scoring.h"
 
 namespace heatsoak::attribution::truth {
@@ -102,15 +99,12 @@ TEST(StatedSensors, AreWrittenWhereTheyWereFoundAndThenNothingIsMissing) {
   for (const TrueRun& run : runs.training) {
     logs.push_back(run.log);
   }
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("stated_sensors_{}.toml", getpid());
-  const motor::Motor motor = sheet_of(runs.make, file);
+  const motor::Motor motor = sheet_of(runs.make);
   recording::NamedLogs named_logs;
   named_logs.fitted = logs;
   const diagnosis::DiagnosisAnswer first = diagnosis::run_diagnosis({motor, named_logs});
   ASSERT_EQ(first.diagnosis.verdict, diagnosis::DiagnosisVerdict::effect_found) << account(first.diagnosis);
-  std::ofstream(file) << motor::to_toml(first.motor);
-  const motor::Motor again = motor::read_motor(file);
-  std::filesystem::remove(file);
+  const motor::Motor again = read_back(first.motor);
   ASSERT_EQ(again.sensors.size(), 1U) << account(first.diagnosis);
   const motor::MotorSensor& sensor = again.sensors.front();
   EXPECT_EQ(sensor.name, "sensor_lag_stator");
@@ -146,12 +140,9 @@ TEST(EffectsOfTheFile, AreNotMoreCertainAfterTheSameLogsAgain) {
   for (const TrueRun& run : runs.training) {
     logs.fitted.push_back(run.log);
   }
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("same_logs_{}.toml", getpid());
-  const diagnosis::DiagnosisAnswer first = diagnosis::run_diagnosis({sheet_of(runs.make, file), logs});
+  const diagnosis::DiagnosisAnswer first = diagnosis::run_diagnosis({sheet_of(runs.make), logs});
   ASSERT_EQ(first.motor.effects.size(), 1U) << account(first.diagnosis);
-  std::ofstream(file) << motor::to_toml(first.motor);
-  const diagnosis::DiagnosisAnswer second = diagnosis::run_diagnosis({motor::read_motor(file), logs});
-  std::filesystem::remove(file);
+  const diagnosis::DiagnosisAnswer second = diagnosis::run_diagnosis({read_back(first.motor), logs});
   const auto width_of = [](const diagnosis::DiagnosisAnswer& answer) {
     const base::Spread& spread = *answer.motor.effects.front().parameters.front().spread;
     return std::log(spread.high / spread.low);

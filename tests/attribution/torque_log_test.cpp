@@ -1,10 +1,8 @@
 // Logs with shaft torque and speed, without a current: the current follows from the torque and the drag, which is fitted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "diagnosis/diagnosis_job.h"
 #include "examination.h"
@@ -42,9 +40,7 @@ using Form = recording::Recording (*)(recording::Recording log);
 
 /// Returns the diagnosis of a motor whose file states two thirds of the true no-load current, with a range that contains it.
 diagnosis::DiagnosisAnswer answer_of(const Runs& runs, Form form) {
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("torque_log_{}.toml", getpid());
-  motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
+  motor::Motor motor = sheet_of(runs.make);
   base::ParameterValue& no_load = *motor::find_parameter(motor, "no_load_current");
   no_load.value = kNoLoad_A / 1.5;
   no_load.spread = base::Spread{base::Spread::Kind::range, 0.5 * no_load.value, 2.0 * no_load.value, true};

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <map>
+#include <ranges>
 
+#include "calibration/calibrate.h"
 #include "diagnosis/diagnosis_job.h"
 #include "diagnosis/model_file.h"
 #include "estimation/fit.h"
@@ -89,9 +89,7 @@ TEST(UnchangedMotor, AFittedValueOutsideItsDeclaredRangeIsReported) {
   Case one;
   one.training_runs = 1;
   const Runs runs = record(one);
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("unchanged_motor_{}.toml", getpid());
-  motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
+  motor::Motor motor = sheet_of(runs.make);
   base::ParameterValue& declared = *motor::find_parameter(motor, kKey);
   declared.value = 1.35 * runs.make.iron_to_air_K_per_W;
   declared.spread = base::Spread{base::Spread::Kind::range, 0.95 * declared.value, 1.05 * declared.value, true};
@@ -112,9 +110,7 @@ TEST(UnchangedMotor, ABadGuessOfAnEffectIsNoBound) {
   one.training_runs = 2;
   one.missing = std::ranges::find(subjects(), "third_node", &Subject::name)->make(1.5);
   const Runs runs = record(one);
-  const auto file = std::filesystem::path(testing::TempDir()) / fmt::format("unchanged_motor_guess_{}.toml", getpid());
-  motor::Motor motor = sheet_of(runs.make, file);
-  std::filesystem::remove(file);
+  motor::Motor motor = sheet_of(runs.make);
   const auto guess = [](double value) {
     base::ParameterValue parameter;
     parameter.value = value;
@@ -135,6 +131,27 @@ TEST(UnchangedMotor, ABadGuessOfAnEffectIsNoBound) {
   const auto capacity = static_cast<std::size_t>(fitted.network.capacity_index(fitted.network.node("third_node")));
   EXPECT_GT(fitted.values[capacity], 45.0 * kGuess_J_per_K);
   EXPECT_LT(fitted.values[capacity], 2.0 * 140.0);
+}
+
+/// The file is a forecast fit to the first run. The other runs agree with it, so its values stay as they are.
+TEST(UnchangedMotor, KeepsAFileThatWasFittedToAnotherRun) {
+  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    const Runs runs = record(one);
+    const motor::Motor sheet = sheet_of(runs.make);
+    calibration::CalibrationOptions options;
+    options.fit.threads = 1;
+    const motor::Motor fitted =
+        read_back(calibration::calibrated_motor(sheet, calibration::calibrate(sheet, std::vector{runs.training.front().log}, {}, options)));
+    recording::NamedLogs logs;
+    std::ranges::transform(runs.training | std::views::drop(1), std::back_inserter(logs.fitted), &TrueRun::log);
+    std::ranges::transform(runs.unseen, std::back_inserter(logs.held_out), &TrueRun::log);
+    const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({fitted, logs});
+    claim.expect(answer.diagnosis.effects.empty(), account(answer.diagnosis));
+    EXPECT_EQ(read_back(answer.motor).id, read_back(fitted).id);
+  });
+  EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
 TEST(UnchangedMotor, HasRunsThatAgree) {

@@ -25,11 +25,10 @@ const thermal::EffectInPlace* effect_named(const thermal::Network& network, std:
 
 }  // namespace
 
-ForecastModel::ForecastModel(MotorModel model, const motor::Motor& motor, std::vector<FreeFault> faults)
+ForecastModel::ForecastModel(MotorModel model, std::vector<FreeFault> faults)
     : motor_(std::move(model)), faults_(std::move(faults)) {
   find_ties();
   find_heat();
-  find_conditions(motor);
   for (const estimation::FreeParameter& free : motor_.model.free) {
     wanted_.push_back(free.place);
   }
@@ -65,17 +64,6 @@ void ForecastModel::find_heat() {
   }
 }
 
-void ForecastModel::find_conditions(const motor::Motor& motor) {
-  for (const motor::MotorEffect& effect : motor.effects) {
-    const std::optional<int> size = effect.type->candidacy.size_parameter;
-    // An effect is not in the network if its condition holds in no recording.
-    const thermal::EffectInPlace* const in_place = effect_named(network(), effect.name);
-    if (!effect.condition.empty() && size && in_place) {
-      conditional_.push_back({in_place->parameter_index[static_cast<std::size_t>(*size)], effect.condition});
-    }
-  }
-}
-
 Eigen::VectorXd ForecastModel::start() const {
   Eigen::VectorXd theta = prior_.mean;
   theta.head(motor_.model.free_count()) = motor_.model.theta();
@@ -106,8 +94,8 @@ std::vector<double> ForecastModel::values_in(const estimation::MeasuredRun& run,
   for (const int place : heat_places_) {
     at(place) *= std::exp(log_heat_ratio);
   }
-  for (const Conditional& each : conditional_) {
-    at(each.place) = run.has(each.condition) ? at(each.place) : 0.0;
+  for (const estimation::ConditionalTerm& each : motor_.model.conditional) {
+    at(each.place) = run.has(each.condition) ? at(each.place) : each.off_value;
   }
   return values;
 }
@@ -136,7 +124,7 @@ estimation::LinearisedRun ForecastModel::along(const estimation::MeasuredRun& ru
     }
     out.by_parameter.col(count()) += values[static_cast<std::size_t>(heat_places_[i])] * by_value.col(column);
   }
-  for (const Conditional& each : conditional_) {
+  for (const estimation::ConditionalTerm& each : motor_.model.conditional) {
     if (const Eigen::Index own = position(each.place); own < inner && !run.has(each.condition)) {
       out.by_parameter.col(own).setZero();
     }

@@ -27,8 +27,7 @@ struct FreeFault {
 /// Model with coordinates θ: those of the network, then the logarithms of the fault sizes.
 class ForecastModel {
  public:
-  /// `model` must be built from `motor`.
-  ForecastModel(MotorModel model, const motor::Motor& motor, std::vector<FreeFault> faults);
+  ForecastModel(MotorModel model, std::vector<FreeFault> faults);
 
   [[nodiscard]] const MotorModel& motor() const { return motor_; }
   [[nodiscard]] const thermal::Network& network() const { return motor_.model.network; }
@@ -55,20 +54,13 @@ class ForecastModel {
     int place = 0;
     int of = 0;
   };
-  /// Parameter that is 0 in runs without the condition.
-  struct Conditional {
-    int place = 0;
-    std::map<std::string, std::string> condition;
-  };
   void find_ties();
   void find_heat();
-  void find_conditions(const motor::Motor& motor);
 
   MotorModel motor_;
   std::vector<FreeFault> faults_;
   estimation::Prior prior_;
   std::vector<Tie> ties_;
-  std::vector<Conditional> conditional_;
   std::vector<int> heat_places_;  ///< parameters to which the heat of the inputs is proportional
   std::vector<int> wanted_;       ///< indices of the free parameters, then of the ties, then heat_places_
 };

@@ -185,7 +185,7 @@ ForecastModel ForecastSetup::model() const {
   if (opens_loss_at_speed) {
     open_loss_at_speed(all, motor);
   }
-  return {std::move(all), motor, faults};
+  return {std::move(all), faults};
 }
 
 ForecastSetup forecast_setup(const motor::Motor& motor, std::span<const recording::Recording> recordings,

@@ -201,6 +201,17 @@ std::string say(const calibration::SensorHeld& of) {
                      base::significant(of.value, 3), of.unit.empty() ? "" : " ", of.unit);
 }
 
+std::string say(const calibration::ConditionNotApplied& of) {
+  return fmt::format(
+      "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
+      "runs without that condition",
+      of.effect, estimation::in_words(of.condition), of.type);
+}
+
+std::string say(const calibration::ConditionNeverMet& of) {
+  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, estimation::in_words(of.condition));
+}
+
 std::string say(const calibration::SensorUnused& of) {
   return fmt::format("no log has the {} to which effects.{} applies: the effect is not used", of.signal, of.sensor);
 }

@@ -6,7 +6,6 @@
 #include <variant>
 
 #include "base/quantity.h"
-#include "estimation/log_rows.h"
 #include "present/measured/calibration_words.h"
 #include "present/measured/diagnosis_words.h"
 #include "present/measured/run_words.h"
@@ -22,17 +21,6 @@ std::string say(const diagnosis::ExtensionsMayImitate& of) {
       "an effect similar to {} may not be found, because the file has {} for better forecasts only; calibrate with --innovations for a "
       "diagnosis",
       fmt::join(of.effects, " and "), it_or_them(of.effects.size()));
-}
-
-std::string say(const diagnosis::ConditionNotApplied& of) {
-  return fmt::format(
-      "{} acts in every run here, although its condition is {}: an effect of the type {} has no size that could be set to 0; leave out the "
-      "runs without that condition",
-      of.effect, estimation::in_words(of.condition), of.type);
-}
-
-std::string say(const diagnosis::ConditionNeverMet& of) {
-  return fmt::format("{} acts in none of these runs: no log has its condition {}", of.effect, estimation::in_words(of.condition));
 }
 
 std::string say(const diagnosis::IntervalsOfDataSheet& /*of*/) {
@@ -81,9 +69,8 @@ Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
   }
   using Warnings = Kinds<ExtensionsMayImitate, calibration::ContradictingRun, calibration::OutsideDeclaredRange,
                          calibration::HeatInputLacking, calibration::ShaftPowerUnknown>;
-  using Notes =
-      Kinds<calibration::SignalsMissing, ConditionNotApplied, ConditionNeverMet, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat,
-            TorqueFromCurrent, ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
+  using Notes = Kinds<calibration::SignalsMissing, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
+                      ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
   return severity_in<Warnings, Notes, Kinds<>>(finding);
 }
 
