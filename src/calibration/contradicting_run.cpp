@@ -37,7 +37,7 @@ class Comparison {
              const std::vector<Eigen::VectorXd>& weights)
       : fit_(fit), runs_(runs), options_(estimation::least_squares_options(fit.model, kMostSteps)) {
     options_.weights = weights;
-    const auto has_own = [&](const estimation::MeasuredRun& run) { return estimation::own_effect_count(fit.model, run) > 0; };
+    const auto has_own = [&](const estimation::MeasuredRun& run) { return estimation::own_effect_count(fit.model, runs, run) > 0; };
     if (std::ranges::any_of(runs, has_own)) {
       together_ = estimation::fit_of(estimation::some_of(runs, fit, options_, [](const auto&) { return true; }));
     }
@@ -113,10 +113,18 @@ class Comparison {
     return FromOthers{std::move(own), std::move(others.runs), std::move(*by_others), std::move(of_others)};
   }
 
-  /// True if the model contains a few effects of this recording alone.
+  /// True if the model contains a few effects of this recording alone. If most recordings have effects that no log states, none of them
+  /// shows what is usual.
   [[nodiscard]] bool is_explained(const std::vector<estimation::MeasuredRun>& own) const {
+    const auto is_unstated = [&](const estimation::MeasuredRun& run) {
+      const auto is_of_run = [&](const auto& term) { return term.condition.contains("run") && run.has(term.condition); };
+      return std::ranges::any_of(fit_.model.conditional, is_of_run) || std::ranges::any_of(fit_.model.deviations, is_of_run);
+    };
+    if (2 * std::ranges::count_if(runs_, is_unstated) > std::ssize(runs_)) {
+      return false;
+    }
     std::ptrdiff_t effects = 0;
-    std::ranges::for_each(own, [&](const auto& run) { effects = std::max(effects, estimation::own_effect_count(fit_.model, run)); });
+    std::ranges::for_each(own, [&](const auto& run) { effects = std::max(effects, estimation::own_effect_count(fit_.model, runs_, run)); });
     return effects > 0 && effects <= kMostOwnEffects;
   }
 

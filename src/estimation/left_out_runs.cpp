@@ -50,7 +50,7 @@ double error_of_ends_K(const Posterior& start, const std::vector<MeasuredRun>& r
 std::vector<std::string> without_own_effect(const Model& model, const std::vector<MeasuredRun>& runs) {
   std::set<std::string> names;
   for (const MeasuredRun& run : runs) {
-    if (own_effect_count(model, run) == 0) {
+    if (own_effect_count(model, runs, run) == 0) {
       names.insert(recording_of(run));
     }
   }
@@ -102,9 +102,13 @@ MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight) {
   return run;
 }
 
-std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run) {
-  const auto is_met = [&](const auto& term) { return !term.condition.empty() && run.has(term.condition); };
-  return std::ranges::count_if(model.conditional, is_met) + std::ranges::count_if(model.deviations, is_met);
+std::ptrdiff_t own_effect_count(const Model& model, const std::vector<MeasuredRun>& runs, const MeasuredRun& run) {
+  const std::string own = recording_of(run);
+  const auto is_own = [&](const auto& term) {
+    const auto has_or_is_same = [&](const MeasuredRun& each) { return recording_of(each) == own || each.has(term.condition); };
+    return !term.condition.empty() && (run.has(term.condition) || std::ranges::all_of(runs, has_or_is_same));
+  };
+  return std::ranges::count_if(model.conditional, is_own) + std::ranges::count_if(model.deviations, is_own);
 }
 
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {

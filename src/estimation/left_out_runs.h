@@ -69,8 +69,9 @@ Posterior fit_of(const SomeRuns& some);
 /// Returns the run with NaN for the samples whose weight is 0. `weight` per sample; empty: all stay.
 MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight);
 
-/// Returns the number of effects and deviations of the conditions of this run. Without the run, nothing may determine their sizes.
-std::ptrdiff_t own_effect_count(const Model& model, const MeasuredRun& run);
+/// Returns the number of effects and deviations of the conditions of this run, or of all recordings of `runs` but this one. Without the run,
+/// nothing may determine their sizes.
+std::ptrdiff_t own_effect_count(const Model& model, const std::vector<MeasuredRun>& runs, const MeasuredRun& run);
 
 /// True if at least three recordings have no effect of their own: fewer have too few different loads to show what predicts another one.
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
