@@ -29,7 +29,11 @@ constexpr double kFar_share = 0.5;
 /// Largest number of effects that explain why one run differs. With more of them, any run can be followed.
 constexpr std::ptrdiff_t kMostOwnEffects = 2;
 
-double ratio(const ContradictingRun& each) { return each.by_others_K / std::max(each.alone_K, each.usual_K); }
+/// Ratio of the error of the run to that of its best explanation.
+double ratio(const ContradictingRun& each) {
+  const double explained_K = each.moved ? std::min(each.alone_K, each.moved->rmse_K) : each.alone_K;
+  return each.by_others_K / std::max(explained_K, each.usual_K);
+}
 
 class Comparison {
  public:
@@ -66,10 +70,15 @@ class Comparison {
         !spoils(rest->own.runs, std::max(usual_K, estimation::rms_K(alone_K)))) {
       return std::nullopt;
     }
+    const std::optional<estimation::MovedSensor> moved = estimation::moved_sensor(rest->model, rest->own.runs);
     std::optional<ContradictingRun> worst;
     for (const auto& [signal, error] : rest->by_others) {
-      const ContradictingRun each{recording, signal, error.rmse_K, alone_K.at(signal).rmse_K,
-                                  rest->of_others.contains(signal) ? rest->of_others.at(signal).rmse_K : error.rmse_K};
+      ContradictingRun each{recording,    signal,
+                            error.rmse_K, alone_K.at(signal).rmse_K,
+                            {},           rest->of_others.contains(signal) ? rest->of_others.at(signal).rmse_K : error.rmse_K};
+      if (moved && moved->rmse_K < kContradicts_K && moved->rmse_K < each.alone_K) {
+        each.moved = moved;
+      }
       if (each.by_others_K > kContradicts_K && ratio(each) > kContradicts_ratio && (!worst || ratio(each) > ratio(*worst))) {
         worst = each;
       }
@@ -82,6 +91,7 @@ class Comparison {
   struct FromOthers {
     estimation::SomeRuns own;
     std::vector<estimation::MeasuredRun> others;
+    estimation::Model model;  ///< with these parameters
     estimation::Errors by_others, of_others;
 
     /// Returns whether these errors contradict; `share` < 1 makes the limits less strict.
@@ -110,7 +120,7 @@ class Comparison {
       return std::nullopt;
     }
     estimation::Errors of_others = estimation::open_loop_errors(fit.model, others.runs, {});
-    return FromOthers{std::move(own), std::move(others.runs), std::move(*by_others), std::move(of_others)};
+    return FromOthers{std::move(own), std::move(others.runs), fit.model, std::move(*by_others), std::move(of_others)};
   }
 
   /// True if the model contains a few effects of this recording alone. If most recordings have effects that no log states, none of them
@@ -172,6 +182,12 @@ std::optional<ContradictingRun> contradicting_run(const estimation::Model& model
   fitted.set_theta(fit.theta);
   const estimation::Posterior near = estimation::try_posterior_of(std::move(fitted), runs, fit.start_C, options);
   return std::isfinite(near.evidence_nats) ? contradicting_run(near, runs, options.weights) : std::nullopt;
+}
+
+std::optional<ContradictingRun> run_with_moved_sensor(const estimation::Model& model, const std::vector<estimation::MeasuredRun>& runs) {
+  const estimation::FirstFit first = estimation::first_fit(model, runs, {.starts = 0});
+  std::optional<ContradictingRun> found = contradicting_run(first.fit, runs, first.setup.weights);
+  return found && found->moved ? found : std::nullopt;
 }
 
 }  // namespace heatsoak::calibration

@@ -144,6 +144,9 @@ std::optional<calibration::ContradictingRun> diagnose_recordings(const Diagnosis
   if (std::vector<std::string> rare = estimation::keep_common_columns(input.train, input.model.columns); !rare.empty()) {
     findings.emplace_back(ColumnsNotSearched{std::move(rare)});
   }
+  if (std::optional<calibration::ContradictingRun> found = calibration::run_with_moved_sensor(input.model, input.train)) {
+    return found;
+  }
   answer.diagnosis = diagnose(input, {});
   const std::vector<std::string>& columns = answer.diagnosis.selection.after.model.columns;
   estimation::set_columns(input.train, columns);

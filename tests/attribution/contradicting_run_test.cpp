@@ -39,6 +39,47 @@ TEST(ContradictingRun, AMovedSensorIsReportedWithItsRun) {
   EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
 }
 
+/// A sensor of one run with another place or an offset. No parameters of the motor follow such a run.
+struct Move {
+  const char* name;
+  std::size_t sensor;  ///< 0: winding, 1: stator
+  double to_other_share, offset_K;
+};
+class MovedSensors : public testing::TestWithParam<Move> {};
+
+TEST_P(MovedSensors, AreReportedWithTheirMove) {
+  const Move& move = GetParam();
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
+    Case one;
+    one.seed = seed;
+    Runs runs = record(one);
+    std::vector<recording::Channel>& channels = runs.training[kMovedIn].log.channels;
+    for (std::size_t row = 0; row < channels[0].values.size(); ++row) {
+      double& reading_C = channels[move.sensor].values[row];
+      reading_C += move.to_other_share * (channels[1 - move.sensor].values[row] - reading_C) + move.offset_K;
+    }
+    recording::NamedLogs logs;
+    std::ranges::transform(runs.training, std::back_inserter(logs.fitted), &TrueRun::log);
+    const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({sheet_of(runs.make), logs});
+    const calibration::ContradictingRun* run = nullptr;
+    for (const diagnosis::DiagnosisFinding& each : answer.findings) {
+      run = std::holds_alternative<calibration::ContradictingRun>(each) ? &std::get<calibration::ContradictingRun>(each) : run;
+    }
+    claim.expect(run && run->run == "run2" && run->moved && run->moved->signal == channels[move.sensor].quantity.key &&
+                     std::abs(run->moved->to_other_share - move.to_other_share) < 0.1 &&
+                     std::abs(run->moved->offset_K - move.offset_K) < 1.0,
+                 !run          ? "nothing is reported"
+                 : !run->moved ? fmt::format("{} {}", run->run, run->signal)
+                               : fmt::format("{} {} {} {} {}", run->run, run->moved->signal, run->moved->to_other_share,
+                                             run->moved->to_ambient_share, run->moved->offset_K));
+  });
+  EXPECT_GE(rate.right, kSeeds - 2) << rate.misses;
+}
+INSTANTIATE_TEST_SUITE_P(Synthetic, MovedSensors,
+                         testing::Values(Move{"StatorTowardsWinding", 1, 0.3, 0.0}, Move{"StatorOffset", 1, 0.0, 6.0},
+                                         Move{"WindingOffset", 0, 0.0, 8.0}),
+                         [](const auto& instance) { return instance.param.name; });
+
 // A fan that blows in one run only is an effect of that run, not a contradiction.
 TEST(ContradictingRun, IsNoneWithAnEffectOfItsOwn) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {

@@ -102,15 +102,34 @@ std::string say(const calibration::UnidentifiableAreWritten& /*of*/) {
          "measurements";
 }
 
+/// Returns how the sensor seems to have been moved: the shares of at least 2 % and an offset of at least 0.2 K.
+std::string move_words(const estimation::MovedSensor& moved) {
+  constexpr double kLeast_share = 0.02;
+  constexpr double kLeast_K = 0.2;
+  std::vector<std::string> parts;
+  for (const auto& [share, place] : {std::pair(moved.to_other_share, "the other sensor"), std::pair(moved.to_ambient_share, "the air")}) {
+    if (std::abs(share) >= kLeast_share) {
+      parts.push_back(fmt::format("{} % of the way {} the temperature of {}", base::significant(100.0 * std::abs(share), 2),
+                                  share > 0.0 ? "to" : "away from", place));
+    }
+  }
+  if (std::abs(moved.offset_K) >= kLeast_K) {
+    parts.push_back(fmt::format("{} K too {}", base::significant(std::abs(moved.offset_K), 2), moved.offset_K > 0.0 ? "much" : "little"));
+  }
+  return fmt::format("its {} sensor reads {}, which leaves {} K", part_of(moved.signal),
+                     parts.empty() ? "almost as before" : fmt::format("{}", fmt::join(parts, " and ")), base::significant(moved.rmse_K, 2));
+}
+
 std::string say(const calibration::ContradictingRun& run) {
   return fmt::format(
-      "{0}{1}: with parameters that follow the others to {2} K RMS, its {3} is wrong by {4} K, although {0} alone can be followed to {5} "
-      "K. "
-      "Check whether a sensor was moved or the mounting was changed before {0}{6}",
+      "{0}{1}: with parameters that follow the others to {2} K RMS, its {3} is wrong by {4} K, although {5}. Check whether a sensor was moved "
+      "or the mounting was changed before {0}{6}",
       run.run,
       run.is_left_out ? " is left out, because it contradicts the other runs"
                       : " contradicts the other runs, so the written values may hold for none of them",
-      base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2), base::significant(run.alone_K, 2),
+      base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2),
+      run.moved ? fmt::format("it fits if {}", move_words(*run.moved))
+                : fmt::format("{} alone can be followed to {} K", run.run, base::significant(run.alone_K, 2)),
       run.is_left_out ? "" : fmt::format("; calibrate without it, or let `heatsoak diagnose` search for an effect of {}", run.run));
 }
 

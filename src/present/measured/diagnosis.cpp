@@ -1,8 +1,11 @@
 #include "present/measured/diagnosis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <variant>
 
 #include "present/measured/diagnosis_output.h"
 #include "present/measured/diagnosis_words.h"
@@ -13,6 +16,11 @@ Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<
   std::string verdict = verdict_words(answer.diagnosis) + ".";
   verdict.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(verdict.front())));
   Document document{.headline = {{verdict}}, .paragraphs = diagnosis_words(answer)};
+  for (const diagnosis::DiagnosisFinding& each : answer.findings) {
+    if (const auto* const odd = std::get_if<calibration::ContradictingRun>(&each)) {
+      document.headline.push_back({fmt::format("This is the answer without {}, which contradicts the other runs.", odd->run)});
+    }
+  }
   std::vector<Note> notes = diagnosis_notes(answer, readings);
   std::ranges::stable_partition(notes, [](const Note& each) { return each.severity == Severity::warning; });
   for (const Note& each : notes) {
