@@ -18,6 +18,7 @@
 #include "derate/sensed/sensor_plan.h"
 #include "derate/smallest_factor.h"
 #include "motor/datasheet_network.h"
+#include "motor/conditions.h"
 #include "motor/measured_power.h"
 #include "robot/motor_drive.h"
 #include "thermal/ensemble.h"
@@ -378,6 +379,7 @@ Derating derate(const motor::Motor& as_written, const robot::Robot& robot, const
                   .doubtful_values = motor::doubtful_values(as_written),
                   .measured_power = motor::measured_power(motor),
                   .unmodelled_heat_share = motor.fit ? motor.fit->unmodelled_heat_share : std::nullopt,
+                  .fit_conditions = motor::unstated_fit_conditions(motor),
                   .is_brushless = motor.type != "brushed",
                   .heating_current_ratio = robot::heating_factor(robot),
                   .nominal = motor.nominal,

@@ -82,6 +82,7 @@ struct Derating {
   /// MotorFit::heat_input if it is from measured power, which the firmware does not know.
   std::optional<motor::HeatInput> measured_power = {};
   std::optional<double> unmodelled_heat_share = {};  ///< MotorFit::unmodelled_heat_share: not covered by the guarantee
+  std::vector<std::string> fit_conditions = {};      ///< motor::unstated_fit_conditions(): the guarantee holds only under them
   bool is_brushless = true;
   double heating_current_ratio = 1.0;     ///< heating_factor() of the robot: heating current per equivalent DC current
   motor::MotorValues nominal = {};        ///< nominal values of the motor's file

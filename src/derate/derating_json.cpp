@@ -255,6 +255,7 @@ nlohmann::ordered_json derating_json(const Derating& derating) {
               {"doubtful_values", words_of(derating.doubtful_values)},
               {"measured_power", derating.measured_power ? Json(motor::name_of(*derating.measured_power)) : Json()},
               {"unmodelled_heat_share", derating.unmodelled_heat_share ? Json(*derating.unmodelled_heat_share) : Json()},
+              {"fit_conditions", derating.fit_conditions},
               {"nodes", std::vector<std::string>(derating.observer.state_names().begin(), derating.observer.state_names().end())},
               {"signals", signals},
               {"effects", effects},

@@ -111,6 +111,10 @@ std::vector<std::string> value_warnings(const Derating& derating) {
         "that only the power showed is left out, so the guard may allow too much current.",
         motor::name_of(*derating.measured_power)));
   }
+  if (!derating.fit_conditions.empty()) {
+    lines.push_back(fmt::format("DOUBTFUL: the values were fitted to runs with {} only. Without it, the guard may allow too much current.",
+                                fmt::join(derating.fit_conditions, " ")));
+  }
   if (derating.unmodelled_heat_share) {
     lines.push_back(
         fmt::format("DOUBTFUL: the calibration found heat that the model lacks, {:.2g} % of the mean heat or more. The guarantee does "

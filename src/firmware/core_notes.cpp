@@ -64,6 +64,13 @@ std::string say(const FittedToPower& of) {
       motor::name_of(of.heat));
 }
 
+std::string say(const FittedUnder& note) {
+  return fmt::format(
+      "the values were fitted to runs with {} only: without it, the guard may allow too much current. If it always holds, state it "
+      "(--condition {})",
+      fmt::join(note.conditions, " "), fmt::join(note.conditions, " --condition "));
+}
+
 std::string say(const HeatUnmodelled& of) {
   return fmt::format(
       "the guard may allow too much current, because the calibration found heat that the model lacks, {} % of the mean heat of its runs or "
@@ -114,6 +121,9 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
   if (derating.measured_power) {
     notes.emplace_back(FittedToPower{*derating.measured_power});
   }
+  if (!derating.fit_conditions.empty()) {
+    notes.emplace_back(FittedUnder{derating.fit_conditions});
+  }
   if (derating.unmodelled_heat_share) {
     notes.emplace_back(HeatUnmodelled{*derating.unmodelled_heat_share});
   }
@@ -127,7 +137,8 @@ std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& mo
 
 bool is_unsafe(const CoreNote& note) {
   return std::holds_alternative<ValueDoubtful>(note) || std::holds_alternative<FittedToPower>(note) ||
-         std::holds_alternative<HeatUnmodelled>(note) || std::holds_alternative<ShadowModeChosen>(note);
+         std::holds_alternative<HeatUnmodelled>(note) || std::holds_alternative<FittedUnder>(note) ||
+         std::holds_alternative<ShadowModeChosen>(note);
 }
 
 std::string to_string(const CoreNote& note) {

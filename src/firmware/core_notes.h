@@ -54,10 +54,14 @@ struct FittedToPower {
 struct HeatUnmodelled {
   double share = 0.0;  ///< MotorFit::unmodelled_heat_share
 };
+/// All runs of the motor's fit had these conditions "key=value", which the caller did not state.
+struct FittedUnder {
+  std::vector<std::string> conditions;
+};
 /// The core was generated with --shadow.
 struct ShadowModeChosen {};
 using CoreNote = std::variant<FrictionUnknown, InputNotMeasured, ColumnUnknown, SpreadsAssumed, ConditionStated, StopTakesCurrent,
-                              ValueDoubtful, FittedToPower, HeatUnmodelled, ShadowModeChosen>;
+                              ValueDoubtful, FittedToPower, HeatUnmodelled, FittedUnder, ShadowModeChosen>;
 
 /// Returns the findings about the core of this robot and motor. `braking_reserve_K`: rise of the winding in one full stop.
 std::vector<CoreNote> notes_on(const robot::Robot& robot, const motor::Motor& motor, const derate::Derating& derating,

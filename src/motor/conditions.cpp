@@ -48,6 +48,21 @@ bool acts_by_default(const MotorEffect& effect, std::span<const double> paramete
   return state_C.empty() || heat_W[static_cast<std::size_t>(hottest)] >= 0.0;
 }
 
+std::vector<std::string> unstated_fit_conditions(const Motor& motor) {
+  std::map<std::string, std::vector<std::string>> by_key;
+  for (const std::string& each : motor.fit ? motor.fit->training.conditions : std::set<std::string>{}) {
+    by_key[each.substr(0, each.find('='))].push_back(each);
+  }
+  std::vector<std::string> unstated;
+  for (const auto& [key, all] : by_key) {
+    const bool has_effect = std::ranges::any_of(motor.effects, [&](const MotorEffect& effect) { return effect.condition.contains(key); });
+    if (all.size() == 1 && !has_effect && !motor.assumed.contains(key)) {
+      unstated.push_back(all.front());
+    }
+  }
+  return unstated;
+}
+
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
   std::set<std::string> there;
   for (const MotorEffect& effect : motor.effects) {
@@ -55,8 +70,13 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
       there.insert(fmt::format("{}={}", key, value));
     }
   }
+  const std::vector<std::string> of_fit = unstated_fit_conditions(motor);
+  there.insert(of_fit.begin(), of_fit.end());
   for (const auto& [key, value] : conditions) {
-    const bool is_key = std::ranges::any_of(there, [start = key + "="](const std::string& each) { return each.starts_with(start); });
+    if (std::ranges::find(of_fit, fmt::format("{}={}", key, value)) != of_fit.end()) {
+      continue;
+    }
+    const bool is_key = std::ranges::any_of(motor.effects, [&](const MotorEffect& effect) { return effect.condition.contains(key); });
     if (!is_key) {
       throw base::Failure(base::ExitCode::bad_input,
                           there.empty()
@@ -75,6 +95,17 @@ Motor under(Motor motor, const std::map<std::string, std::string>& conditions) {
   }
   motor.assumed = conditions;
   return motor;
+}
+
+bool depends_on(const Motor& motor, const std::string& key) {
+  const std::vector<std::string> of_fit = unstated_fit_conditions(motor);
+  return std::ranges::any_of(motor.effects, [&](const MotorEffect& effect) { return effect.condition.contains(key); }) ||
+         std::ranges::any_of(of_fit, [start = key + "="](const std::string& each) { return each.starts_with(start); });
+}
+
+Motor under_its_own(Motor motor, std::map<std::string, std::string> conditions) {
+  std::erase_if(conditions, [&](const auto& each) { return !depends_on(motor, each.first); });
+  return under(std::move(motor), conditions);
 }
 
 }  // namespace heatsoak::motor

@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "motor/motor.h"
 
@@ -14,7 +15,17 @@ namespace heatsoak::motor {
 bool acts_by_default(const MotorEffect& effect, std::span<const double> parameters);
 
 /// Returns the motor with known conditions, such as "cooling" -> "fan": effects under another value of a key are removed, those under this
-/// value become unconditional. Throws Failure (bad_input) if no effect of the motor has such a key; the message lists the existing ones.
+/// value become unconditional. Throws Failure (bad_input) if no effect of the motor has such a key, and not all runs of its fit had this
+/// value; the message lists what is possible.
 Motor under(Motor motor, const std::map<std::string, std::string>& conditions);
+
+/// Returns whether a condition with this key changes the motor: an effect depends on it, or all runs of its fit had one value of it.
+bool depends_on(const Motor& motor, const std::string& key);
+/// Returns the motor with those of the conditions that it depends on.
+Motor under_its_own(Motor motor, std::map<std::string, std::string> conditions);
+
+/// Returns the conditions "key=value" that all runs of the motor's fit had, except those with effects of their own and those that
+/// Motor::assumed states: the motor's values may hold only under them.
+std::vector<std::string> unstated_fit_conditions(const Motor& motor);
 
 }  // namespace heatsoak::motor

@@ -89,6 +89,12 @@ std::string value_warnings(std::span<const motor::Motor> motors) {
           "temperatures may be too low\n",
           motor.id, motor::name_of(*heat));
     }
+    if (const std::vector<std::string> only = motor::unstated_fit_conditions(motor); !only.empty()) {
+      text += fmt::format(
+          "{}: temperatures may be too low, and currents too large, under other conditions than {}: all runs that the values were fitted to "
+          "had it. If it always holds, state it (--condition {}); else fit the file to runs without it\n",
+          motor.id, fmt::join(only, " "), fmt::join(only, " --condition "));
+    }
     if (motor.fit && motor.fit->unmodelled_heat_share) {
       text += fmt::format(
           "{}: the calibration found heat that the model lacks, {} % of the mean heat of its runs or more. Temperatures and allowed "

@@ -11,6 +11,22 @@
 
 namespace heatsoak::select {
 
+namespace {
+
+/// Applies each condition to the motors that depend on it; at least one must.
+void apply_conditions(const std::map<std::string, std::string>& conditions, std::vector<motor::Motor>& motors) {
+  for (const auto& [key, value] : conditions) {
+    if (!motors.empty() && std::ranges::none_of(motors, [&](const motor::Motor& motor) { return motor::depends_on(motor, key); })) {
+      motor::under(motors.front(), {{key, value}});  // throws
+    }
+  }
+  for (motor::Motor& motor : motors) {
+    motor = motor::under_its_own(std::move(motor), conditions);
+  }
+}
+
+}  // namespace
+
 std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::NamedFiles& files) {
   std::vector<std::string> single;
   for (const std::string& name : names.motors) {
@@ -37,8 +53,11 @@ std::vector<motor::Motor> named_candidates(const CandidateNames& names, duty::Na
                                         file->stem().string()));
     }
     if (const std::optional<motor::Motor> motor = files.motor(name)) {
-      motors.push_back(names.model.empty() ? motor::under(*motor, names.conditions) : *motor);
+      motors.push_back(*motor);
     }
+  }
+  if (names.model.empty()) {
+    apply_conditions(names.conditions, motors);
   }
   return motors;
 }
@@ -48,7 +67,7 @@ std::vector<motor::Motor> motors_of_database(const input::DataFolders& folders, 
   for (const std::string& id : input::ids_in(folders.motors)) {
     duty::NamedFiles files(folders);
     if (const std::optional<motor::Motor> motor = files.motor(id)) {
-      motors.push_back(motor::under(*motor, conditions));
+      motors.push_back(motor::under_its_own(*motor, conditions));
     }
   }
   return motors;

@@ -104,6 +104,30 @@ TEST(Predict, WarnsOfAConditionThatNoFittedRunHad) {
   EXPECT_THAT(other.out, HasSubstr("warning: The forecast of match_1 may be far off: its run has fan=on"));
 }
 
+// A motor that was only measured with a fan is too cool in every other verb, unless the fan always blows.
+TEST(Predict, EveryVerbWarnsOfTheOneConditionOfAllFittedRuns) {
+  const TemporaryFolder folder;
+  write(folder.path() / "on.map.toml", mapping_with("on"));
+  ASSERT_EQ(run({"calibrate", "--motor", kMotor, log("bench.csv"), "--map", "on.map.toml", "--out", "model.toml"}, in(folder)).exit_code,
+            0);
+  const std::string robot = "roboteam_twente_v2024";
+  const std::vector<Words> verbs{{"evaluate", "--model", "model.toml", "--robot", robot, "--duty", "paper_intermittent", "--samples", "0"},
+                                 {"steady", "--motor", "model.toml", "--current-on", "2A", "--time-on", "4", "--time-off", "10"},
+                                 {"derate", "--model", "model.toml", "--robot", robot, "--to", "c_header", "--out", "table.h", "--explain",
+                                  "--samples", "60", "--period", "0.001"}};
+  for (const Words& verb : verbs) {
+    const ProgramRun unstated = run(verb, in(folder));
+    EXPECT_THAT(unstated.out + unstated.err, HasSubstr("warning: model: temperatures may be too low")) << verb.front();
+    const ProgramRun stated = run(verb + Words{"--condition", "fan=on"}, in(folder));
+    EXPECT_THAT(stated.out + stated.err,
+                testing::AllOf(testing::Not(HasSubstr("temperatures may be too low")), HasSubstr("this result is valid only if fan is on")))
+        << verb.front();
+    const ProgramRun other = run(verb + Words{"--condition", "fan=off"}, in(folder));
+    EXPECT_EQ(other.exit_code, 2) << verb.front();
+    EXPECT_THAT(other.err, HasSubstr("expected one of model's: fan=on")) << verb.front();
+  }
+}
+
 TEST(Predict, QuietIsTheVerdictAlone) {
   const TemporaryFolder folder;
   const ProgramRun done = run({"predict", "--model", kMotor, log("match_1.csv"), "--quiet"}, in(folder));
