@@ -67,6 +67,10 @@ struct BandIncludesLossAtSpeed {
   std::string recording;
   double most_W = 0.0;
 };
+/// A hold-out log has no score, because the temperatures of a model diverge with its inputs.
+struct HoldoutDiverges {
+  std::string recording;
+};
 /// The motor file has no band from a calibration; the band follows from declared uncertainties and the usual error of forecasts.
 struct BandIsEstimated {
   std::string motor;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -189,8 +190,13 @@ class Calibrating {
     if (holdout_.empty()) {
       return;
     }
-    all_.holdout_before = predict(motor, holdout_, {options_.ambient_C, setup_.heat}).runs;
-    Prediction after = predict(calibrated_motor(motor, all_), holdout_, {options_.ambient_C, setup_.heat});
+    const PredictionOptions how{options_.ambient_C, setup_.heat};
+    const std::array motors{motor, calibrated_motor(motor, all_)};
+    std::vector<HoldoutDiverges> diverging;
+    const std::vector<recording::Recording> holdout = predictable(motors, holdout_, how, diverging);
+    std::ranges::move(diverging, std::back_inserter(all_.findings));
+    all_.holdout_before = predict(motors[0], holdout, how).runs;
+    Prediction after = predict(motors[1], holdout, how);
     for (const PredictionNote& note : after.notes) {
       std::visit([this](const auto& each) { all_.findings.emplace_back(each); }, note);
     }

@@ -94,7 +94,8 @@ using CalibrationFinding =
     std::variant<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues, FitStoppedEarly,
                  HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, ContradictingRun, UnidentifiableAreWritten,
                  TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest, ExtendedForForecasts, HeldValue,
-                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, estimation::RunNote>;
+                 BandIncludesLossAtSpeed, BandIsEstimated, HeatInputLacking, ShaftPowerUnknown, SignalsMissing, HoldoutDiverges,
+                 estimation::RunNote>;
 
 /// Returns whether a finding of this type exists.
 template <class Finding>

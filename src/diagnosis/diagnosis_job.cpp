@@ -1,6 +1,7 @@
 #include "diagnosis/diagnosis_job.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -168,8 +169,15 @@ std::optional<calibration::ContradictingRun> diagnose_recordings(const Diagnosis
     answer.band = size_of_band(answer.motor, fitted, predicting);
   }
   progress.begin(kScoring);
-  answer.score = score_holdout({job.motor, refitted_motor(job.motor, model, answer.diagnosis), answer.motor}, held_out, predicting);
+  const std::array motors{job.motor, refitted_motor(job.motor, model, answer.diagnosis), answer.motor};
+  std::vector<calibration::HoldoutDiverges> diverging;
+  const std::vector<recording::Recording> scored = calibration::predictable(motors, held_out, predicting, diverging);
+  answer.score = score_holdout({motors[0], motors[1], motors[2]}, scored, predicting);
   answer.score.runs = std::move(holdout.runs);
+  for (calibration::HoldoutDiverges& each : diverging) {
+    std::erase_if(answer.score.runs, [&](const estimation::MeasuredRun& run) { return estimation::recording_of(run) == each.recording; });
+    findings.emplace_back(std::move(each));
+  }
   std::ranges::move(holdout.findings, std::back_inserter(findings));
   if (model.is_speed_linear) {
     answer.score.runs = estimation::turning_within_rows(std::move(answer.score.runs));

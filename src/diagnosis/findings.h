@@ -35,7 +35,8 @@ struct ColumnsNotSearched {
 using DiagnosisFinding =
     std::variant<ExtensionsMayImitate, calibration::ContradictingRun, calibration::SignalsMissing, IntervalsOfDataSheet, HoldoutWasFitted,
                  LossInUnknownHeat, TorqueFromCurrent, ColumnsNotSearched, calibration::OutsideDeclaredRange, calibration::RowsTurn,
-                 calibration::HeldValue, calibration::HeatInputLacking, calibration::ShaftPowerUnknown, estimation::RunNote>;
+                 calibration::HeldValue, calibration::HeatInputLacking, calibration::ShaftPowerUnknown, calibration::HoldoutDiverges,
+                 estimation::RunNote>;
 
 /// Thrown if no log has a heat input that the motor's model uses.
 class NothingHeatsModel : public base::Failure {

@@ -216,6 +216,26 @@ TEST(Diagnose, ScoresEachHoldoutRunWithThreeFilesAlike) {
   }
 }
 
+/// Four times the logged current: the temperatures of every model diverge in the hold-out run.
+TEST(Diagnose, AHoldoutRunThatDivergesHasNoScoreAndPreventsNoModel) {
+  const TemporaryFolder folder;
+  const std::string holdout = changed_log(folder, "match_3.csv", [](int line, std::vector<std::string>& cells) {
+    cells[kCurrent] = line > 0 ? std::to_string(4.0 * std::stod(cells[kCurrent])) : cells[kCurrent];
+  });
+  const ProgramRun done = run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), "--holdout", holdout, log("bench.csv"),
+                               "--out", "found", "--as-is", "--json", "-"},
+                              in(folder));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_TRUE(fs::exists(folder.path() / fmt::format("found/{}.toml", kMotor)));
+  EXPECT_THAT(done.json()["warnings"].dump(), HasSubstr("match_3 has no score"));
+  EXPECT_EQ(done.json()["holdout_run"]["winding_C"], "bench");
+  const ProgramRun fitted =
+      run({"calibrate", "--motor", kMotor, log("match_1.csv"), "--holdout", holdout, "--as-is", "--out", "model.toml"}, in(folder));
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  EXPECT_THAT(fitted.out, HasSubstr("match_3 has no score"));
+  EXPECT_TRUE(fs::exists(folder.path() / "model.toml"));
+}
+
 TEST(Diagnose, RefusesRunsThatNoExtendedModelFollows) {
   const TemporaryFolder folder;
   const std::string file = changed_log(

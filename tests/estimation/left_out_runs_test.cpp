@@ -132,9 +132,16 @@ TEST(LeftOutErrors, NeedThreeRecordingsWithoutAnEffectOfTheirOwn) {
   RunDeviation deviation;
   deviation.condition = {{"run", "run2"}};
   fitted.fit.model.deviations.push_back(deviation);
-  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs[1]), 1);
-  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs[0]), 0);
+  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs, fitted.runs[1]), 1);
+  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs, fitted.runs[0]), 0);
   EXPECT_FALSE(can_leave_out(fitted.fit.model, fitted.runs));
+  // The third run alone lacks the condition, so without it nothing separates the effect from the motor's own parameters.
+  for (const std::size_t r : {0, 1}) {
+    fitted.runs[r].conditions["fan"] = "on";
+  }
+  fitted.runs[2].conditions["fan"] = "off";
+  fitted.fit.model.deviations.front().condition = {{"fan", "on"}};
+  EXPECT_EQ(own_effect_count(fitted.fit.model, fitted.runs, fitted.runs[2]), 1);
 }
 
 TEST(LeftOutErrors, RejectedSamplesDoNotCount) {

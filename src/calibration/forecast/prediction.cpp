@@ -152,6 +152,22 @@ std::vector<estimation::MeasuredRun> forecast_runs(const ForecastSetup& setup, s
   return all;
 }
 
+std::vector<recording::Recording> predictable(std::span<const motor::Motor> motors, std::span<const recording::Recording> recordings,
+                                              const PredictionOptions& options, std::vector<HoldoutDiverges>& diverging) {
+  std::vector<recording::Recording> all;
+  for (const recording::Recording& recording : recordings) {
+    try {
+      for (const motor::Motor& motor : motors) {
+        predict(motor, {&recording, 1}, options);
+      }
+      all.push_back(recording);
+    } catch (const estimation::RunNotSimulated&) {
+      diverging.push_back({recording.name});
+    }
+  }
+  return all;
+}
+
 motor::ForecastBand band_of_left_out(std::span<const LeftOutRecording> left_out) {
   std::vector<estimation::MeasuredRun> runs;
   std::vector<PredictedPiece> pieces;

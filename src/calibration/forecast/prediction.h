@@ -57,6 +57,11 @@ struct PredictionOptions {
 /// Throws Failure: bad_input if a log has no heat input or no temperature, numerics_failed if the temperatures diverge.
 Prediction predict(const motor::Motor& motor, std::span<const recording::Recording> recordings, const PredictionOptions& options);
 
+/// Returns the recordings that can be predicted with all these motors. Appends the others, along which temperatures diverge, to
+/// `diverging`: a log that only scores an answer must not prevent it.
+std::vector<recording::Recording> predictable(std::span<const motor::Motor> motors, std::span<const recording::Recording> recordings,
+                                              const PredictionOptions& options, std::vector<HoldoutDiverges>& diverging);
+
 /// A recording, and the motor file that results from a fit without it.
 struct LeftOutRecording {
   recording::Recording recording;

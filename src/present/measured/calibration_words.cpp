@@ -133,6 +133,13 @@ std::string say(const calibration::ContradictingRun& run) {
       run.is_left_out ? "" : fmt::format("; calibrate without it, or let `heatsoak diagnose` search for an effect of {}", run.run));
 }
 
+std::string say(const calibration::HoldoutDiverges& of) {
+  return fmt::format(
+      "{} has no score: with its inputs, the temperatures of the model leave -273 to 1000 °C; check the units of its columns (`heatsoak log "
+      "inspect`)",
+      of.recording);
+}
+
 std::string say(const calibration::TooFewPieces& of) {
   const std::string parts = of.are_whole_runs
                                 ? fmt::format("run{}", of.pieces == 1 ? "" : "s")
@@ -456,7 +463,7 @@ Severity severity_of(const calibration::CalibrationFinding& finding) {
     return severity_of(*note);
   }
   using Warnings = Kinds<HeatSeemsWrong, ResistanceDiffers, LargeChange, OutsideDeclaredRange, PoorFit, ContradictingRun, HeatInputLacking,
-                         ShaftPowerUnknown>;
+                         ShaftPowerUnknown, HoldoutDiverges>;
   using Notes = Kinds<LossAtSpeedUnknown, RowsTurn, UnmodelledHeat, SensorDrift, WindingNotMeasured, ResponseNeedsOtherValues,
                       FitStoppedEarly, UnidentifiableAreWritten, TooFewPieces, ForecastFitIsWritten, FilePredictsBest, FreeRunsPredictBest,
                       ExtendedForForecasts, HeldValue, BandIncludesLossAtSpeed, BandIsEstimated, SignalsMissing, estimation::RunNote>;

@@ -68,7 +68,7 @@ Severity severity_of(const diagnosis::DiagnosisFinding& finding) {
     return severity_of(*note);
   }
   using Warnings = Kinds<ExtensionsMayImitate, calibration::ContradictingRun, calibration::OutsideDeclaredRange,
-                         calibration::HeatInputLacking, calibration::ShaftPowerUnknown>;
+                         calibration::HeatInputLacking, calibration::ShaftPowerUnknown, calibration::HoldoutDiverges>;
   using Notes = Kinds<calibration::SignalsMissing, IntervalsOfDataSheet, HoldoutWasFitted, LossInUnknownHeat, TorqueFromCurrent,
                       ColumnsNotSearched, calibration::RowsTurn, calibration::HeldValue, estimation::RunNote>;
   return severity_in<Warnings, Notes, Kinds<>>(finding);
