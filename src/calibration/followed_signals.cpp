@@ -9,6 +9,8 @@ namespace {
 
 /// Error that is too large for any use of the model.
 constexpr double kFar_K = 20.0;
+/// A smaller error is no sign of wrong logs, even if the signal hardly varies.
+constexpr double kUsual_K = 10.0;
 
 }  // namespace
 
@@ -17,7 +19,7 @@ std::vector<PoorFit> not_followed(const std::map<std::string, double>& rmse_K, s
   std::vector<PoorFit> found;
   for (const auto& [signal, error_K] : rmse_K) {
     const double varies_K = estimation::standard_deviation_K(runs, signal);
-    if (error_K > varies_K || error_K > std::max(kFar_K, far_share * varies_K)) {
+    if (error_K > std::max(kUsual_K, varies_K) || error_K > std::max(kFar_K, far_share * varies_K)) {
       found.push_back({signal, error_K, varies_K});
     }
   }

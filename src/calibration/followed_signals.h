@@ -15,8 +15,8 @@ namespace heatsoak::calibration {
 /// Share of its variation from which an error of more than 20 K is too large.
 inline constexpr double kFar_share = 0.4;
 
-/// Returns the signals that a model does not follow: with an error above the standard deviation of the signal, or above both 20 K and
-/// `far_share` of that deviation. `rmse_K` per signal, over all runs.
+/// Returns the signals that a model does not follow: with an error above both 10 K and the standard deviation of the signal, or above both
+/// 20 K and `far_share` of that deviation. `rmse_K` per signal, over all runs.
 std::vector<PoorFit> not_followed(const std::map<std::string, double>& rmse_K, std::span<const estimation::MeasuredRun> runs,
                                   double far_share = kFar_share);
 

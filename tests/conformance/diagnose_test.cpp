@@ -291,7 +291,7 @@ TEST(Diagnose, NamesTheLogUnderWhichTheModelRunsAway) {
     cells[kCurrent] = line > 0 ? fmt::format("{}", 30.0 * std::stod(cells[kCurrent])) : cells[kCurrent];
   });
   const ProgramRun done =
-      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), "--holdout", file, "--as-is"}, in(folder));
+      run({"diagnose", "--model", kMotor, "--train", log("match_1.csv"), log("bench.csv"), file, "--as-is"}, in(folder));
   EXPECT_EQ(done.exit_code, 4) << done.out;
   EXPECT_THAT(done.err, HasSubstr("match_3: the simulated temperature leaves"));
   EXPECT_THAT(done.err, HasSubstr("check the units of the log's columns"));
