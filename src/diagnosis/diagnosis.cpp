@@ -45,7 +45,10 @@ class DiagnosisReport {
       if (term.curve && term.effect_name.empty()) {
         continue;  // the model does not contain it
       }
-      out_.effects.push_back(found_effect(term, out_.selection, input_.train));
+      FoundEffect& effect = out_.effects.emplace_back(found_effect(term, out_.selection, input_.train));
+      if (!effect.condition.empty()) {
+        effect.same_conditions = estimation::same_as(effect.condition, input_.train);
+      }
     }
     report_changed_parameters();
     out_.runs = input_.train;

@@ -24,15 +24,16 @@ struct FoundEffect {
   std::string node;
   std::string description;  ///< one line from the catalogue
   std::vector<FittedParameter> parameters;
-  std::map<std::string, std::string> condition;  ///< the effect acts only in runs with this condition; empty: in all runs
-  std::vector<std::string> signals;              ///< signals of a curve; else empty
-  double mean_W = 0.0;                           ///< mean magnitude over the runs in which it acts
-  double peak_W = 0.0;                           ///< 99th percentile of the magnitude
-  bool has_heat = true;                          ///< false: a sensor error
-  double probability = 0.0;                      ///< posterior probability of the effect's family
-  double gain_nats = 0.0;                        ///< loss of ln P without the effect's family
-  double delta_bic = 0.0;                        ///< −2 · gain_nats
-  double p_value = 1.0;                          ///< p-value of the model without the effect's family
+  std::map<std::string, std::string> condition;             ///< the effect acts only in runs with this condition; empty: in all runs
+  std::vector<estimation::Condition> same_conditions = {};  ///< of other keys, for exactly the same runs
+  std::vector<std::string> signals;                         ///< signals of a curve; else empty
+  double mean_W = 0.0;                                      ///< mean magnitude over the runs in which it acts
+  double peak_W = 0.0;                                      ///< 99th percentile of the magnitude
+  bool has_heat = true;                                     ///< false: a sensor error
+  double probability = 0.0;                                 ///< posterior probability of the effect's family
+  double gain_nats = 0.0;                                   ///< loss of ln P without the effect's family
+  double delta_bic = 0.0;                                   ///< −2 · gain_nats
+  double p_value = 1.0;                                     ///< p-value of the model without the effect's family
   double visibility_ratio = 0.0;
   std::vector<std::string> confusable_with;  ///< effects confounded with it in these runs
   std::string confounded_with;               ///< effects confounded with it in general, from the catalogue

@@ -82,6 +82,20 @@ std::string in_words(const Condition& condition) {
   return text;
 }
 
+std::vector<Condition> same_as(const Condition& condition, std::span<const MeasuredRun> runs) {
+  std::vector<Condition> all;
+  for (const MeasuredRun& run : runs) {
+    for (const auto& [key, value] : run.conditions) {
+      const Condition other{{key, value}};
+      const bool is_same = std::ranges::all_of(runs, [&](const MeasuredRun& each) { return each.has(other) == each.has(condition); });
+      if (is_same && key != "run" && !condition.contains(key) && std::ranges::find(all, other) == all.end()) {
+        all.push_back(other);
+      }
+    }
+  }
+  return all;
+}
+
 bool are_related(const Condition& a, const Condition& b, std::span<const MeasuredRun> runs) {
   if (a.empty() || b.empty()) {
     return a == b;

@@ -21,6 +21,8 @@ std::string in_words(const Condition& condition);
 /// Returns all conditions that divide the runs in two, without duplicates. A stated condition has priority over the name of a single run.
 std::vector<Condition> conditions_of(std::span<const MeasuredRun> runs);
 
+/// Returns the conditions of other stated keys that hold in exactly the same runs: the data do not show which of them matters.
+std::vector<Condition> same_as(const Condition& condition, std::span<const MeasuredRun> runs);
 /// Returns whether conditions ask one question: values of the same stated keys, as in "cooling=a" and "cooling=b", or of the same runs, or
 /// of exactly the others. An effect of one value may then be replaced by an opposite effect of another value.
 bool are_related(const Condition& a, const Condition& b, std::span<const MeasuredRun> runs);

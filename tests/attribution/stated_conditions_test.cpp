@@ -71,6 +71,21 @@ TEST(StatedConditions, EachOfThreeValuesHasItsOwnAirflow) {
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
 
+/// If two keys always change together, neither is known to matter; the effect keeps the name of one and the answer lists the other.
+TEST(StatedConditions, OfTwoKeysThatChangeTogetherBothAreReported) {
+  recording::NamedLogs logs;
+  logs.fitted = with_cooling(1, "off", 0, 2);
+  std::ranges::move(with_cooling(1, "on", 2, 2), std::back_inserter(logs.fitted));
+  for (recording::Recording& each : logs.fitted) {
+    each.conditions["bench"] = each.conditions["cooling"] == "on" ? "new" : "old";
+  }
+  const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({sheet_of_seed(1), logs});
+  ASSERT_EQ(answer.diagnosis.effects.size(), 1U) << account(answer.diagnosis);
+  const diagnosis::FoundEffect& effect = answer.diagnosis.effects.front();
+  EXPECT_EQ(effect.condition, (estimation::Condition{{"bench", "new"}}));
+  EXPECT_THAT(effect.same_conditions, testing::ElementsAre(estimation::Condition{{"cooling", "on"}}));
+}
+
 /// A later run with the fan must not change what the file states about the motor without it.
 TEST(StatedConditions, ACalibrationKeepsTheEffectsOfItsFile) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {

@@ -65,6 +65,7 @@ Json effect_json(const diagnosis::FoundEffect& effect) {
             {"node", effect.node},
             {"parameters", parameters},
             {"condition", effect.condition},
+            {"same_conditions", effect.same_conditions},
             {"drivers", effect.signals},
             {"heat_W", {{"mean", rounded(effect.mean_W, 4)}, {"max", rounded(effect.peak_W, 4)}}},
             {"evidence",

@@ -13,6 +13,7 @@
 #include "base/confidence.h"
 #include "base/quantity.h"
 #include "calibration/unlogged_speed.h"
+#include "estimation/run_deviation.h"
 #include "estimation/thresholds.h"
 #include "motor/sensor_effect.h"
 #include "present/measured/calibration_words.h"
@@ -96,6 +97,12 @@ std::string effect_in_words(const diagnosis::FoundEffect& effect) {
     text += fmt::format("; {} W on average, up to {} W", base::significant(effect.mean_W, 2), base::significant(effect.peak_W, 2));
   }
   text += fmt::format(". Without it the model would be {}.", less_probable(effect.gain_nats));
+  if (!effect.same_conditions.empty()) {
+    std::vector<std::string> others;
+    std::ranges::transform(effect.same_conditions, std::back_inserter(others), estimation::in_words);
+    text += fmt::format(" The same runs, and no others, have {}: which of the conditions matters is not determined.",
+                        fmt::join(others, " and "));
+  }
   if (!effect.confusable_with.empty()) {
     text += fmt::format(" In these runs it cannot be distinguished from {}.", fmt::join(effect.confusable_with, " or "));
   }
