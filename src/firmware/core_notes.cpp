@@ -66,8 +66,9 @@ std::string say(const FittedToPower& of) {
 
 std::string say(const FittedUnder& note) {
   return fmt::format(
-      "the values were fitted to runs with {} only: without it, the guard may allow too much current. If it always holds, state it "
-      "(--condition {})",
+      "the guard may allow too much current without {}, because all runs that the motor's values were fitted to had it; if it always "
+      "holds, "
+      "state it (--condition {})",
       fmt::join(note.conditions, " "), fmt::join(note.conditions, " --condition "));
 }
 

@@ -87,6 +87,10 @@ TEST(CoreNotes, EveryKindHasItsSentence) {
       {HeatUnmodelled{0.08},
        "the guard may allow too much current, because the calibration found heat that the model lacks, 8 % of the mean heat of its runs or "
        "more; `heatsoak diagnose` searches for the missing effect"},
+      {FittedUnder{{"fan=on", "cover=off"}},
+       "the guard may allow too much current without fan=on cover=off, because all runs that the motor's values were fitted to had it; if "
+       "it "
+       "always holds, state it (--condition fan=on --condition cover=off)"},
       {FrictionUnknown{"mine.toml"},
        "feed-forward of friction is off, so the wheels lag until their integrators have compensated it: mine.toml has no [friction]; "
        "measure it with `heatsoak friction`"},
