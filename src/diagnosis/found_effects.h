@@ -25,7 +25,7 @@ struct FoundEffect {
   std::string description;  ///< one line from the catalogue
   std::vector<FittedParameter> parameters;
   std::map<std::string, std::string> condition;             ///< the effect acts only in runs with this condition; empty: in all runs
-  std::vector<estimation::Condition> same_conditions = {};  ///< of other keys, for exactly the same runs
+  std::vector<estimation::Condition> same_conditions = {};  ///< those of other keys that hold in exactly the same runs
   std::vector<std::string> signals;                         ///< signals of a curve; else empty
   double mean_W = 0.0;                                      ///< mean magnitude over the runs in which it acts
   double peak_W = 0.0;                                      ///< 99th percentile of the magnitude
