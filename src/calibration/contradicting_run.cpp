@@ -16,8 +16,7 @@ namespace {
 /// different loads contradict each other although nothing was changed.
 constexpr double kContradicts_K = estimation::kIncompleteModel_K;
 /// Smallest error of a run that contradicts the others without a sign of a moved sensor: a mounting that changes rises of 30 K by 10 %.
-/// Smaller errors are usual for a run with another load, such as one on a bench, if an effect is missing (five of 165 synthetic motors: 1.2
-/// to 2.8 K).
+/// Smaller errors are usual for a run with another load, such as one on a bench, if an effect is missing.
 constexpr double kOtherMounting_K = 3.0;
 /// Smallest ratio of the error of a run, predicted with the parameters of the others, to the errors of both fits: 7 to 14 if a sensor was
 /// moved, at most 4 otherwise (18 synthetic motors).

@@ -156,7 +156,11 @@ std::optional<calibration::ContradictingRun> diagnose_recordings(const Diagnosis
   const attribution::Selection& selection = answer.diagnosis.selection;
   if (std::optional<calibration::ContradictingRun> found =
           calibration::contradicting_run(selection.after, input.train, selection.weights)) {
-    return found;
+    if (found->moved) {
+      return found;
+    }
+    // A missing effect that acts in one run only looks alike.
+    findings.emplace_back(*std::move(found));
   }
   refuse_where_nothing_follows(answer.diagnosis, input);
   answer.motor = extended_motor(job.motor, model, answer.diagnosis);

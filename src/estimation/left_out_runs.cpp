@@ -103,12 +103,17 @@ MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight) {
 }
 
 std::ptrdiff_t own_effect_count(const Model& model, const std::vector<MeasuredRun>& runs, const MeasuredRun& run) {
-  const std::string own = recording_of(run);
-  const auto is_own = [&](const auto& term) {
-    const auto has_or_is_same = [&](const MeasuredRun& each) { return recording_of(each) == own || each.has(term.condition); };
-    return !term.condition.empty() && (run.has(term.condition) || std::ranges::all_of(runs, has_or_is_same));
+  const auto effects_in = [&](const MeasuredRun& each) {
+    const auto is_met = [&](const auto& term) { return !term.condition.empty() && each.has(term.condition); };
+    return std::ranges::count_if(model.conditional, is_met) + std::ranges::count_if(model.deviations, is_met);
   };
-  return std::ranges::count_if(model.conditional, is_own) + std::ranges::count_if(model.deviations, is_own);
+  if (const std::ptrdiff_t own = effects_in(run); own > 0 || model.conditional.size() + model.deviations.size() == 0) {
+    return own;
+  }
+  const std::string name = recording_of(run);
+  const bool is_only_one_without =
+      std::ranges::all_of(runs, [&](const MeasuredRun& each) { return recording_of(each) == name || effects_in(each) > 0; });
+  return is_only_one_without ? 1 : 0;
 }
 
 bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs) {

@@ -69,8 +69,8 @@ Posterior fit_of(const SomeRuns& some);
 /// Returns the run with NaN for the samples whose weight is 0. `weight` per sample; empty: all stay.
 MeasuredRun without_rejected(MeasuredRun run, const Eigen::VectorXd& weight);
 
-/// Returns the number of effects and deviations of the conditions of this run, or of all recordings of `runs` but this one. Without the run,
-/// nothing may determine their sizes.
+/// Returns the number of effects and deviations of the conditions of this run; 1 if it has none but all other recordings of `runs` have
+/// some. Without the run, nothing may determine their sizes.
 std::ptrdiff_t own_effect_count(const Model& model, const std::vector<MeasuredRun>& runs, const MeasuredRun& run);
 
 /// True if at least three recordings have no effect of their own: fewer have too few different loads to show what predicts another one.
@@ -78,8 +78,8 @@ bool can_leave_out(const Model& model, const std::vector<MeasuredRun>& runs);
 
 /// Predicts every recording with a fit to the others that starts from `fit`. Returns the RMS error in K over these recordings and all
 /// signals, with equal weights; ∞ if a fit fails. Recordings with an effect of their own are fitted, but not predicted: in the model
-/// `usual_in`, or in that of `fit` if it is null. Samples with the weight 0 do not count. Call it only if can_leave_out(). If the error is above `largest_K`, the result is the error or ∞,
-/// because not all recordings need a fit then.
+/// `usual_in`, or in that of `fit` if it is null. Samples with the weight 0 do not count. Call it only if can_leave_out(). If the error is
+/// above `largest_K`, the result is the error or ∞, because not all recordings need a fit then.
 double left_out_error_K(const Posterior& fit, const std::vector<MeasuredRun>& runs, const PosteriorOptions& options,
                         double largest_K = std::numeric_limits<double>::infinity(), const Model* usual_in = nullptr);
 

@@ -108,4 +108,17 @@ Motor under_its_own(Motor motor, std::map<std::string, std::string> conditions) 
   return under(std::move(motor), conditions);
 }
 
+std::vector<std::string> conditions_without_runs(const Motor& motor) {
+  const std::set<std::string> fitted = motor.fit ? motor.fit->training.conditions : std::set<std::string>{};
+  std::vector<std::string> missing;
+  for (const auto& [key, value] : motor.assumed) {
+    const std::string stated = fmt::format("{}={}", key, value);
+    if (std::ranges::any_of(fitted, [start = key + "="](const std::string& each) { return each.starts_with(start); }) &&
+        !fitted.contains(stated)) {
+      missing.push_back(stated);
+    }
+  }
+  return missing;
+}
+
 }  // namespace heatsoak::motor

@@ -24,6 +24,9 @@ bool depends_on(const Motor& motor, const std::string& key);
 /// Returns the motor with those of the conditions that it depends on.
 Motor under_its_own(Motor motor, std::map<std::string, std::string> conditions);
 
+/// Returns the stated conditions "key=value" (Motor::assumed) of whose key the fitted runs had other values only.
+std::vector<std::string> conditions_without_runs(const Motor& motor);
+
 /// Returns the conditions "key=value" that all runs of the motor's fit had, except those with effects of their own and those that
 /// Motor::assumed states: the motor's values may hold only under them.
 std::vector<std::string> unstated_fit_conditions(const Motor& motor);

@@ -91,9 +91,14 @@ std::string value_warnings(std::span<const motor::Motor> motors) {
     }
     if (const std::vector<std::string> only = motor::unstated_fit_conditions(motor); !only.empty()) {
       text += fmt::format(
-          "{}: temperatures may be too low, and currents too large, under other conditions than {}: all runs that the values were fitted to "
+          "{}: temperatures may be too low, and currents too large, under other conditions than {}: all runs that the values were fitted "
+          "to "
           "had it. If it always holds, state it (--condition {}); else fit the file to runs without it\n",
           motor.id, fmt::join(only, " "), fmt::join(only, " --condition "));
+    }
+    if (const std::vector<std::string> missing = motor::conditions_without_runs(motor); !missing.empty()) {
+      text += fmt::format("{}: temperatures and currents are guesses under {}: no run that the values were fitted to had it\n", motor.id,
+                          fmt::join(missing, " "));
     }
     if (motor.fit && motor.fit->unmodelled_heat_share) {
       text += fmt::format(

@@ -243,15 +243,26 @@ class Suspector {
   /// both.
   void constant_heat_inputs() {
     constexpr double kMoves_K = 10.0;
+    constexpr double kMoves_share = 0.5;
     constexpr int kFewestMoves = 4;
     constexpr std::size_t kFewestSamples = 100;
     const Channel* const winding = recording_.find("winding_C");
     const Channel* const stator = recording_.find("stator_C");
-    const int moves = winding != nullptr && stator != nullptr ? rises_and_falls(*winding, *stator, kMoves_K) : 0;
+    if (winding == nullptr || stator == nullptr) {
+      return;
+    }
+    // A fan that is switched changes the difference, too, but only by a part of it.
+    double largest_K = 0.0;
+    for (std::size_t row = 0; row < winding->values.size(); ++row) {
+      const double difference_K = winding->values[row] - stator->values[row];
+      largest_K = difference_K > largest_K ? difference_K : largest_K;
+    }
+    const double by_K = std::max(kMoves_K, kMoves_share * largest_K);
+    const int moves = rises_and_falls(*winding, *stator, by_K);
     for (const Signal signal : {Signal::current, Signal::input_power}) {
       const ChannelQuality* const range = quality(std::string(column_of(signal)));
       if (moves >= kFewestMoves && range != nullptr && range->samples >= kFewestSamples && range->is_constant()) {
-        found_.emplace_back(ConstantHeatInput{range->quantity.key, range->quantity.unit, range->low, kMoves_K, moves});
+        found_.emplace_back(ConstantHeatInput{range->quantity.key, range->quantity.unit, range->low, by_K, moves});
       }
     }
   }

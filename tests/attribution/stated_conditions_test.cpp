@@ -49,13 +49,16 @@ double conductance_in(const diagnosis::Diagnosis& found, const std::string& cool
 }
 
 /// With three values, the effects of two of them may be replaced by those of the others: one question with two answers.
-TEST(StatedConditions, EachOfThreeValuesHasItsOwnAirflow) {
-  const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
+class StatedConditions : public testing::TestWithParam<int> {};
+
+TEST_P(StatedConditions, EachOfThreeValuesHasItsOwnAirflow) {
+  const int runs = GetParam();
+  const SeedRate rate = rate_over_seeds(kSeeds, [&](std::uint64_t seed, Claim& claim) {
     recording::NamedLogs logs;
     int first = 0;
     for (const char* cooling : {"off", "on", "fast"}) {
-      std::ranges::move(with_cooling(seed, cooling, first, 2), std::back_inserter(logs.fitted));
-      first += 2;
+      std::ranges::move(with_cooling(seed, cooling, first, runs), std::back_inserter(logs.fitted));
+      first += runs;
     }
     logs.held_out = with_cooling(seed, "fast", first, 1);
     const diagnosis::DiagnosisAnswer answer = diagnosis::run_diagnosis({sheet_of_seed(seed), logs});
@@ -70,9 +73,10 @@ TEST(StatedConditions, EachOfThreeValuesHasItsOwnAirflow) {
   });
   EXPECT_GE(rate.right, kSeeds - 1) << rate.misses;
 }
+INSTANTIATE_TEST_SUITE_P(RunsPerValue, StatedConditions, testing::Values(1, 2));
 
 /// If two keys always change together, neither is known to matter; the effect keeps the name of one and the answer lists the other.
-TEST(StatedConditions, OfTwoKeysThatChangeTogetherBothAreReported) {
+TEST(ConditionsOfAFile, OfTwoKeysThatChangeTogetherBothAreReported) {
   recording::NamedLogs logs;
   logs.fitted = with_cooling(1, "off", 0, 2);
   std::ranges::move(with_cooling(1, "on", 2, 2), std::back_inserter(logs.fitted));
@@ -87,7 +91,7 @@ TEST(StatedConditions, OfTwoKeysThatChangeTogetherBothAreReported) {
 }
 
 /// A later run with the fan must not change what the file states about the motor without it.
-TEST(StatedConditions, ACalibrationKeepsTheEffectsOfItsFile) {
+TEST(ConditionsOfAFile, ACalibrationKeepsTheEffectsOfItsFile) {
   const SeedRate rate = rate_over_seeds(kSeeds, [](std::uint64_t seed, Claim& claim) {
     recording::NamedLogs logs;
     logs.fitted = with_cooling(seed, "off", 0, 2);

@@ -104,6 +104,21 @@ TEST(Predict, WarnsOfAConditionThatNoFittedRunHad) {
   EXPECT_THAT(other.out, HasSubstr("warning: The forecast of match_1 may be far off: its run has fan=on"));
 }
 
+// Two values of a condition were fitted; the third is a guess.
+TEST(Predict, EveryVerbWarnsOfAStatedConditionWithoutRuns) {
+  const TemporaryFolder folder;
+  std::string motor = content_of(kSoak / "../../motor_db" / fmt::format("{}.toml", kMotor));
+  motor +=
+      "[effects.wind]\ntype = \"airflow\"\nhot = \"stator\"\ncold = \"ambient\"\ncondition = { fan = \"on\" }\nconductance = { value = \"0.1 W/K\", "
+      "origin = \"estimated\", derivation = \"guess\" }\n[fit]\nmotor = \"x\"\nfigures = [\"thermal_time_constant_winding\"]\ncorrelation "
+      "= [\"1\"]\ntrained_conditions = [\"fan=on\", \"fan=fast\"]\n";
+  write(folder.path() / "model.toml", motor);
+  const Words steady{"steady", "--motor", "model.toml", "--current-on", "2A", "--time-on", "4", "--time-off", "10", "--condition"};
+  const ProgramRun off = run(steady + Words{"fan=off"}, in(folder));
+  EXPECT_THAT(off.out, HasSubstr("are guesses under fan=off: no run")) << off.err;
+  EXPECT_THAT(run(steady + Words{"fan=on"}, in(folder)).out, testing::Not(HasSubstr("guesses under")));
+}
+
 // A motor that was only measured with a fan is too cool in every other verb, unless the fan always blows.
 TEST(Predict, EveryVerbWarnsOfTheOneConditionOfAllFittedRuns) {
   const TemporaryFolder folder;

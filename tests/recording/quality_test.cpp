@@ -342,6 +342,27 @@ TEST(Suspicions, NoneAtAConstantCurrentWithOneRiseAndOneFall) {
               IsEmpty());
 }
 
+/// A locked rotor with a constant current, and a fan that is switched: the resistance of the copper changes the difference by a part only.
+TEST(Suspicions, NoneAtAConstantCurrentWithAFanThatIsSwitched) {
+  std::vector<std::pair<double, double>> rows_C;
+  double winding_C = 22.0;
+  double stator_C = 22.0;
+  for (int row = 0; row < 6000; ++row) {
+    rows_C.emplace_back(winding_C, stator_C);
+    for (int i = 0; i < 100; ++i) {
+      const double flow_W = (winding_C - stator_C) / 4.0;
+      winding_C += 0.01 * (0.6 * 16.0 * (1.0 + 0.0039 * (winding_C - 25.0)) - flow_W) / 7.0;
+      stator_C += 0.01 * (flow_W - (stator_C - 22.0) * (0.25 + (row % 1200 < 600 ? 0.0 : 0.9))) / 52.0;
+    }
+  }
+  EXPECT_THAT(read_text(run_of("winding_C,stator_C,ambient_C,current_A", 0, rows_C,
+                               [](double of_winding_C, double of_stator_C, std::size_t) {
+                                 return fmt::format("{:.3f},{:.3f},22,4", of_winding_C, of_stator_C);
+                               }))
+                  .quality.blocking,
+              IsEmpty());
+}
+
 /// The motor starts 15 K colder than its surrounding air.
 TEST(Suspicions, NoneOfAMotorBroughtInCold) {
   SyntheticLog log;

@@ -122,7 +122,8 @@ std::string move_words(const estimation::MovedSensor& moved) {
 
 std::string say(const calibration::ContradictingRun& run) {
   return fmt::format(
-      "{0}{1}: with parameters that follow the others to {2} K RMS, its {3} is wrong by {4} K, although {5}. Check whether a sensor was moved "
+      "{0}{1}: with parameters that follow the others to {2} K RMS, its {3} is wrong by {4} K, although {5}. Check whether a sensor was "
+      "moved "
       "or the mounting was changed before {0}{6}",
       run.run,
       run.is_left_out ? " is left out, because it contradicts the other runs"
@@ -130,12 +131,13 @@ std::string say(const calibration::ContradictingRun& run) {
       base::significant(run.usual_K, 2), part_of(run.signal), base::significant(run.by_others_K, 2),
       run.moved ? fmt::format("it fits if {}", move_words(*run.moved))
                 : fmt::format("{} alone can be followed to {} K", run.run, base::significant(run.alone_K, 2)),
-      run.is_left_out ? "" : fmt::format("; calibrate without it, or let `heatsoak diagnose` search for an effect of {}", run.run));
+      run.is_left_out ? "" : "; leave it out, or state what differs as a condition in a mapping (--map), for `heatsoak diagnose`");
 }
 
 std::string say(const calibration::HoldoutDiverges& of) {
   return fmt::format(
-      "{} has no score: with its inputs, the temperatures of the model leave -273 to 1000 °C; check the units of its columns (`heatsoak log "
+      "{} has no score: with its inputs, the temperatures of the model leave -273 to 1000 °C; check the units of its columns (`heatsoak "
+      "log "
       "inspect`)",
       of.recording);
 }

@@ -17,7 +17,7 @@ Document diagnosis_document(const diagnosis::DiagnosisAnswer& answer, std::span<
   verdict.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(verdict.front())));
   Document document{.headline = {{verdict}}, .paragraphs = diagnosis_words(answer)};
   for (const diagnosis::DiagnosisFinding& each : answer.findings) {
-    if (const auto* const odd = std::get_if<calibration::ContradictingRun>(&each)) {
+    if (const auto* const odd = std::get_if<calibration::ContradictingRun>(&each); odd != nullptr && odd->is_left_out) {
       document.headline.push_back({fmt::format("This is the answer without {}, which contradicts the other runs.", odd->run)});
     }
   }
